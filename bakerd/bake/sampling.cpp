@@ -1,0 +1,131 @@
+#include "bakerd/bake/sampling.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace drtv::bake {
+namespace {
+
+// Joe and Kuo 2008, new-joe-kuo-6: degree, coefficients and initial direction numbers of dimensions 2 to 18.
+struct Polynomial {
+    std::uint32_t degree, coefficients;
+    std::array<std::uint32_t, 7> m;
+};
+constexpr std::array<Polynomial, max_sample_dimensions - 1> polynomials = {{
+    {1, 0, {1}},
+    {2, 1, {1, 3}},
+    {3, 1, {1, 3, 1}},
+    {3, 2, {1, 1, 1}},
+    {4, 1, {1, 1, 3, 3}},
+    {4, 4, {1, 3, 5, 13}},
+    {5, 2, {1, 1, 5, 5, 17}},
+    {5, 4, {1, 1, 5, 5, 5}},
+    {5, 7, {1, 1, 7, 11, 19}},
+    {5, 11, {1, 1, 5, 1, 1}},
+    {5, 13, {1, 1, 1, 3, 11}},
+    {5, 14, {1, 3, 5, 5, 31}},
+    {6, 1, {1, 3, 3, 9, 7, 49}},
+    {6, 13, {1, 1, 1, 15, 21, 21}},
+    {6, 16, {1, 3, 1, 13, 27, 49}},
+    {6, 19, {1, 1, 1, 15, 7, 5}},
+    {6, 22, {1, 3, 1, 15, 13, 25}},
+}};
+
+using Directions = std::array<std::uint32_t, 32>;
+
+Directions direction_numbers(std::uint32_t dimension) {
+    Directions v{};
+    if (dimension == 0) {
+        for (std::uint32_t k = 0; k < 32; ++k) v[k] = 1u << (31 - k);
+        return v;
+    }
+    const Polynomial& p = polynomials[dimension - 1];
+    for (std::uint32_t k = 0; k < p.degree; ++k) v[k] = p.m[k] << (31 - k);
+    for (std::uint32_t k = p.degree; k < 32; ++k) {
+        v[k] = v[k - p.degree] ^ (v[k - p.degree] >> p.degree);
+        for (std::uint32_t q = 1; q < p.degree; ++q) {
+            if ((p.coefficients >> (p.degree - 1 - q) & 1u) != 0) v[k] ^= v[k - q];
+        }
+    }
+    return v;
+}
+
+// SplitMix64's finaliser (Steele, Lea, Flood 2014).
+std::uint64_t mixed(std::uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+    x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+    return x ^ (x >> 31);
+}
+
+// Nested uniform scrambling: each bit is flipped by a coin that depends on all bits before it.
+std::uint32_t owen_scramble(std::uint32_t word, std::uint32_t dimension) {
+    std::uint32_t flips = 0;
+    for (std::uint32_t bit = 0; bit < 32; ++bit) {
+        const std::uint64_t prefix = bit == 0 ? 0 : word >> (32 - bit);
+        const std::uint64_t coin = mixed((std::uint64_t{dimension} << 38 | std::uint64_t{bit} << 32 | prefix) + 0x9E3779B97F4A7C15u);
+        flips |= static_cast<std::uint32_t>(coin >> 63) << (31 - bit);
+    }
+    return word ^ flips;
+}
+
+// Cosine and sine of 2 pi u, u in [0, 1): Taylor series within an eighth of a turn, error below 2^-23.
+glm::vec2 cos_sin_turn(float u) {
+    const float quarter = std::floor(u * 4 + 0.5f);
+    const float x = (u - quarter * 0.25f) * 6.28318530717958648f, x2 = x * x;
+    const float s = x * (1 + x2 * (-1 / 6.0f + x2 * (1 / 120.0f + x2 * (-1 / 5040.0f + x2 * (1 / 362880.0f)))));
+    const float c = 1 + x2 * (-0.5f + x2 * (1 / 24.0f + x2 * (-1 / 720.0f + x2 * (1 / 40320.0f))));
+    switch (static_cast<int>(quarter) & 3) {
+        case 0: return {c, s};
+        case 1: return {-s, c};
+        case 2: return {-c, -s};
+        default: return {s, -c};
+    }
+}
+
+}  // namespace
+
+SampleTable::SampleTable(std::uint32_t count, std::uint32_t dimensions) : count_(count), dimensions_(dimensions), words_(std::size_t{count} * dimensions) {
+    assert(dimensions <= max_sample_dimensions);
+    for (std::uint32_t d = 0; d < dimensions; ++d) {
+        const Directions v = direction_numbers(d);
+        for (std::uint32_t n = 0; n < count; ++n) {
+            std::uint32_t word = 0;
+            for (std::uint32_t k = 0; k < 32; ++k) {
+                if ((n >> k & 1u) != 0) word ^= v[k];
+            }
+            words_[std::size_t{n} * dimensions + d] = owen_scramble(word, d);
+        }
+    }
+}
+
+std::array<std::uint32_t, max_sample_dimensions> digital_shift(const glm::ivec3& p) {
+    std::uint64_t state = mixed(static_cast<std::uint32_t>(p.x) + 0x9E3779B97F4A7C15u);
+    state = mixed(state ^ static_cast<std::uint32_t>(p.y));
+    state = mixed(state ^ static_cast<std::uint32_t>(p.z));
+    std::array<std::uint32_t, max_sample_dimensions> shift{};
+    for (std::uint32_t& word : shift) {
+        state += 0x9E3779B97F4A7C15u;
+        word = static_cast<std::uint32_t>(mixed(state) >> 32);
+    }
+    return shift;
+}
+
+glm::vec3 uniform_sphere(glm::vec2 u) {
+    const float z = 1 - 2 * u.x;
+    const float r = std::sqrt(std::max(0.0f, 1 - z * z));
+    const glm::vec2 turn = cos_sin_turn(u.y);
+    return {r * turn.x, r * turn.y, z};
+}
+
+glm::vec3 cosine_hemisphere(glm::vec2 u, const glm::vec3& normal) {
+    const float r = std::sqrt(u.x), z = std::sqrt(std::max(0.0f, 1 - u.x));
+    const glm::vec2 turn = cos_sin_turn(u.y);
+    // An orthonormal basis without branches (Duff et al. 2017).
+    const float sign = std::copysign(1.0f, normal.z);
+    const float a = -1 / (sign + normal.z), b = normal.x * normal.y * a;
+    const glm::vec3 tangent(1 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
+    const glm::vec3 bitangent(b, sign + normal.y * normal.y * a, -normal.y);
+    return tangent * (r * turn.x) + bitangent * (r * turn.y) + normal * z;
+}
+
+}  // namespace drtv::bake

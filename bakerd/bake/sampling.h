@@ -1,0 +1,45 @@
+// Sample points and the directions made of them, without the C library's trigonometry, whose last bits differ
+// between machines.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace drtv::bake {
+
+// Two dimensions for the first direction and two for each bounce.
+inline constexpr std::uint32_t max_sample_dimensions = 18;
+
+// Points of one Sobol sequence (Sobol 1967; direction numbers of Joe and Kuo 2008), each dimension Owen-scrambled
+// (Owen 1995): all dimensions of a path are stratified jointly. Made once for a count of paths, shared by all probes.
+class SampleTable {
+  public:
+    // REQUIRES: dimensions <= max_sample_dimensions.
+    SampleTable(std::uint32_t count, std::uint32_t dimensions);
+
+    [[nodiscard]] std::uint32_t count() const { return count_; }
+    [[nodiscard]] std::span<const std::uint32_t> point(std::uint32_t n) const { return {&words_[std::size_t{n} * dimensions_], dimensions_}; }
+
+  private:
+    std::uint32_t count_, dimensions_;
+    std::vector<std::uint32_t> words_;  // fixed point, 32 bits after the point
+};
+
+// A probe's own digital shift of the table: words to be XORed, a function of its quantised position alone.
+[[nodiscard]] std::array<std::uint32_t, max_sample_dimensions> digital_shift(const glm::ivec3& position_units);
+
+// In [0, 1).
+[[nodiscard]] inline float unit_float(std::uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; }
+
+// Uniform on the sphere; z falls with u.x.
+[[nodiscard]] glm::vec3 uniform_sphere(glm::vec2 u);
+
+// Density proportional to the cosine to the unit normal.
+[[nodiscard]] glm::vec3 cosine_hemisphere(glm::vec2 u, const glm::vec3& normal);
+
+}  // namespace drtv::bake

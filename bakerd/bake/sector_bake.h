@@ -1,0 +1,24 @@
+// One sector: place, integrate, encode. A pure function of the map's content within reach, the settings and the
+// format version; the same bytes on any number of threads.
+#pragma once
+
+#include "bakerd/bake/settings.h"
+#include "bakerd/bake/world.h"
+
+#include <drtv/sector.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+namespace drtv::bake {
+
+// Runs on the calling thread's TBB arena. Fails with a sentence (too many manual probes; too high a sector).
+[[nodiscard]] tl::expected<Sector, std::string> bake_sector(World& world, map::SectorCoordinate coordinate, const Settings& settings);
+
+// The sector file, checked by the validator; a sentence with the first finding when it fails.
+[[nodiscard]] tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(const Sector& sector);
+
+}  // namespace drtv::bake

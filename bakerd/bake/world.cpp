@@ -1,0 +1,66 @@
+#include "bakerd/bake/world.h"
+
+#include "placement/placement.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace drtv::bake {
+namespace {
+
+constexpr std::int32_t tile_sectors = 8;
+// Sectors come tile by tile; two tiles are at work while one ends and the next begins.
+constexpr std::size_t kept_scenes = 2;
+
+std::int32_t floor_div(std::int32_t a, std::int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+
+}  // namespace
+
+tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map) {
+    std::shared_ptr<World> world(new World(std::move(device), std::move(map)));
+    for (const map::Volume& volume : world->map().volumes) {
+        auto closed = placement::ClosedVolume::make(volume.name, volume.positions, volume.triangles);
+        if (!closed) return tl::unexpected(closed.error());
+        if (volume.kind == map::VolumeKind::no_probes) world->no_probes_.push_back(std::move(*closed));
+    }
+    for (const map::ManualProbe& probe : world->map().probes) world->manual_probes_.push_back(probe.position);
+    return world;
+}
+
+std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate sector, float reach_m) {
+    const map::SectorCoordinate tile{floor_div(sector.i, tile_sectors), floor_div(sector.j, tile_sectors)};
+    CachedScene entry;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = std::find_if(scenes_.begin(), scenes_.end(), [&](const CachedScene& s) { return s.tile == tile && s.reach_m == reach_m; });
+        if (found != scenes_.end()) scenes_.splice(scenes_.begin(), scenes_, found);
+        else scenes_.push_front({tile, reach_m, std::make_shared<std::once_flag>(), std::make_shared<std::shared_ptr<const trace::Scene>>()});
+        while (scenes_.size() > kept_scenes) scenes_.pop_back();
+        entry = scenes_.front();
+    }
+    // Built outside the lock: other tiles need not wait. Isolated, because a thread that helps out while it waits
+    // for the build could otherwise take up another sector of this tile and wait for itself.
+    std::call_once(*entry.built, [&] {
+        tbb::this_task_arena::isolate([&] {
+            constexpr float side_m = tile_sectors * static_cast<float>(map::sector_size_m);
+            const glm::vec2 corner = glm::vec2(tile.i, tile.j) * side_m;
+            // Placement looks over the border too, however short the reach.
+            const float margin_m = std::max(reach_m, placement::decision_margin_m({64}));
+            *entry.scene = trace::Scene::build(geometry_, {corner, corner + side_m}, margin_m);
+        });
+    });
+    return *entry.scene;
+}
+
+std::shared_ptr<const SampleTable> World::samples_for(const Settings& settings) {
+    const std::uint32_t dimensions = 2 + 2 * settings.bounces;
+    const std::lock_guard lock(mutex_);
+    if (!samples_ || samples_->count() != settings.rays || sample_dimensions_ != dimensions) {
+        samples_ = std::make_shared<const SampleTable>(settings.rays, dimensions);
+        sample_dimensions_ = dimensions;
+    }
+    return samples_;
+}
+
+}  // namespace drtv::bake

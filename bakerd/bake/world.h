@@ -1,0 +1,55 @@
+// A map made ready for baking: geometry, volumes, and the scenes around the sectors at work. Thread-safe.
+#pragma once
+
+#include "bakerd/bake/sampling.h"
+#include "bakerd/bake/settings.h"
+#include "bakerd/map/ground.h"
+#include "bakerd/map/map.h"
+#include "bakerd/trace/scene.h"
+#include "placement/closed_volume.h"
+
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+namespace drtv::bake {
+
+class World {
+  public:
+    // Fails with a sentence when a `no_probes` or `interior` volume is not closed.
+    [[nodiscard]] static tl::expected<std::shared_ptr<World>, std::string> open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map);
+
+    [[nodiscard]] const map::Map& map() const { return *geometry_.map(); }
+    [[nodiscard]] const std::vector<placement::ClosedVolume>& no_probes() const { return no_probes_; }
+    [[nodiscard]] const std::vector<glm::dvec3>& manual_probes() const { return manual_probes_; }
+
+    // The scene for a sector: shared by the 8 x 8 sectors of its tile, so that neighbours do not build it again.
+    // Which objects beyond the reach it holds does not change any answer.
+    [[nodiscard]] std::shared_ptr<const trace::Scene> scene_for(map::SectorCoordinate sector, float reach_m);
+
+    [[nodiscard]] std::shared_ptr<const SampleTable> samples_for(const Settings& settings);
+
+  private:
+    struct CachedScene {
+        map::SectorCoordinate tile;
+        float reach_m;
+        std::shared_ptr<std::once_flag> built;
+        std::shared_ptr<std::shared_ptr<const trace::Scene>> scene;
+    };
+    World(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map) : geometry_(std::move(device), std::move(map)) {}
+
+    trace::MapGeometry geometry_;
+    std::vector<placement::ClosedVolume> no_probes_;
+    std::vector<glm::dvec3> manual_probes_;
+
+    std::mutex mutex_;
+    std::list<CachedScene> scenes_;                // guarded by mutex_; most recently used first
+    std::shared_ptr<const SampleTable> samples_;   // guarded by mutex_
+    std::uint32_t sample_dimensions_ = 0;          // guarded by mutex_
+};
+
+}  // namespace drtv::bake

@@ -1,0 +1,119 @@
+// Digests cover what can change a bake and nothing else. Each begins with a tag of its own, so that two kinds
+// never give the same bytes.
+#include "bakerd/map/import_parts.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace drtv::map {
+namespace {
+
+enum class Tag : std::uint32_t { texture = 1, material, primitive, mesh, object, volume, light, probe, map };
+
+// -0 and 0 bake alike.
+glm::vec3 plain(const glm::vec3& v) { return v + 0.0f; }
+
+}  // namespace
+
+Digest digest_texture(const Texture& texture) {
+    Hasher hasher;
+    hasher.add(Tag::texture);
+    hasher.add(texture.width);
+    hasher.add(texture.height);
+    hasher.add(texture.wrap_u);
+    hasher.add(texture.wrap_v);
+    hasher.add_sized(texture.rgba);
+    return hasher.finish();
+}
+
+Digest digest_material(const Material& material, const Map& map) {
+    Hasher hasher;
+    hasher.add(Tag::material);
+    hasher.add(material.base_colour);
+    hasher.add(material.texture != no_texture);
+    if (material.texture != no_texture) {
+        hasher.add(map.textures[material.texture].digest);
+        hasher.add(material.texture_u_from_uv);
+        hasher.add(material.texture_v_from_uv);
+    }
+    hasher.add(material.masked);
+    if (material.masked) hasher.add(material.alpha_cutoff);
+    hasher.add(material.double_sided);
+    return hasher.finish();
+}
+
+Digest digest_primitive(const Primitive& primitive, const Map& map) {
+    Hasher hasher;
+    hasher.add(Tag::primitive);
+    hasher.add_sized(primitive.positions);
+    hasher.add_sized(primitive.triangles);
+    hasher.add_sized(primitive.uvs);
+    hasher.add_sized(primitive.colours);
+    hasher.add(map.materials[primitive.material].digest);
+    return hasher.finish();
+}
+
+Digest digest_mesh(const Mesh& mesh) {
+    Hasher hasher;
+    hasher.add(Tag::mesh);
+    hasher.add(static_cast<std::uint64_t>(mesh.primitives.size()));
+    for (const Primitive& primitive : mesh.primitives) hasher.add(primitive.digest);
+    return hasher.finish();
+}
+
+Digest digest_object(const Object& object, const Map& map) {
+    Hasher hasher;
+    hasher.add(Tag::object);
+    hasher.add(map.meshes[object.mesh].digest);
+    hasher.add(object.role);
+    for (glm::length_t column = 0; column < 4; ++column) hasher.add(plain(object.world_from_object[column]));
+    return hasher.finish();
+}
+
+Digest digest_volume(const Volume& volume) {
+    Hasher hasher;
+    hasher.add(Tag::volume);
+    hasher.add(volume.kind);
+    hasher.add_sized(volume.positions);
+    hasher.add_sized(volume.triangles);
+    return hasher.finish();
+}
+
+void finish_content(Map& map) {
+    const auto by_digest = [](const auto& a, const auto& b) { return a.digest < b.digest; };
+    std::stable_sort(map.objects.begin(), map.objects.end(), by_digest);
+    std::stable_sort(map.volumes.begin(), map.volumes.end(), by_digest);
+    std::stable_sort(map.probes.begin(), map.probes.end(), [](const ManualProbe& a, const ManualProbe& b) {
+        return std::tuple(a.position.x, a.position.y, a.position.z) < std::tuple(b.position.x, b.position.y, b.position.z);
+    });
+    std::vector<Digest> lights;
+    for (const Light& light : map.lights) {
+        Hasher hasher;
+        hasher.add(Tag::light);
+        hasher.add(light.kind);
+        hasher.add(light.colour);
+        for (float value : {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians}) hasher.add(value);
+        hasher.add(plain(light.position));
+        hasher.add(plain(light.direction));
+        lights.push_back(hasher.finish());
+    }
+    std::sort(lights.begin(), lights.end());
+
+    Hasher hasher;
+    hasher.add(Tag::map);
+    hasher.add(static_cast<std::uint64_t>(map.objects.size()));
+    for (const Object& object : map.objects) hasher.add(object.digest);
+    hasher.add(static_cast<std::uint64_t>(map.probes.size()));
+    for (const ManualProbe& probe : map.probes) hasher.add(probe.position);
+    hasher.add(static_cast<std::uint64_t>(map.volumes.size()));
+    for (const Volume& volume : map.volumes) {
+        hasher.add(volume.digest);
+        // The name says which probe an interior uses; what counts is where that probe stands.
+        const auto probe = std::find_if(map.probes.begin(), map.probes.end(), [&](const ManualProbe& p) { return !volume.probe_name.empty() && p.name == volume.probe_name; });
+        hasher.add(probe != map.probes.end() ? probe->position : glm::dvec3(0));
+    }
+    hasher.add_sized(lights);
+    map.content = hasher.finish();
+}
+
+}  // namespace drtv::map

@@ -1,0 +1,23 @@
+// Where the bytes of a map's files come from: a folder, a store of blobs, or memory.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+namespace drtv::map {
+
+using FileBytes = std::vector<std::uint8_t>;
+
+// Gives the bytes of the file with this path, relative to the map's folder, `/` between names; else one
+// sentence that says why not. Must be safe to call again with the same path.
+using FileSource = std::function<tl::expected<FileBytes, std::string>(const std::string& path)>;
+
+// Reads from the folder. Symbolic links are followed; a path is never looked up outside by "..", because the
+// importer refuses such paths before.
+[[nodiscard]] FileSource folder_source(std::string folder);
+
+}  // namespace drtv::map

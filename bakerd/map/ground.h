@@ -1,0 +1,26 @@
+// Which sectors of a map have ground: some static surface over or under the sector's square.
+#pragma once
+
+#include "bakerd/map/map.h"
+
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+namespace drtv::map {
+
+// World square [64 i, 64 i + 64) x [64 j, 64 j + 64).
+struct SectorCoordinate {
+    std::int32_t i = 0, j = 0;
+    auto operator<=>(const SectorCoordinate&) const = default;
+};
+
+inline constexpr double sector_size_m = 64;
+
+// Sorted by (j, i). Fails with a sentence when an object lies beyond the range of sector coordinates (+-16384)
+// or the map covers more than 2^20 sectors.
+[[nodiscard]] tl::expected<std::vector<SectorCoordinate>, std::string> sectors_with_ground(const Map& map);
+
+}  // namespace drtv::map

@@ -1,0 +1,134 @@
+// A map after import: meshes kept once, objects that place them, and all else the bake needs. Plain data,
+// constant after import, shared by all threads. World axes and units: format/SPEC.md section 2 (z up, metres).
+#pragma once
+
+#include "bakerd/map/digest.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat4x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace drtv::map {
+
+struct Bounds {
+    glm::vec3 low{std::numeric_limits<float>::infinity()};
+    glm::vec3 high{-std::numeric_limits<float>::infinity()};
+
+    void extend(const glm::vec3& p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    [[nodiscard]] bool empty() const { return low.x > high.x; }
+};
+
+// Objects lie between -max_height_m and max_height_m.
+inline constexpr float max_height_m = 8192;
+
+enum class Wrap : std::uint8_t { repeat, clamp, mirror };
+
+// A decoded picture with the sampler's wrapping: RGBA, 8 bits, colour still sRGB-encoded, alpha linear.
+struct Texture {
+    std::uint32_t width = 0, height = 0;
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    std::vector<std::uint8_t> rgba;  // rows from v = 0
+    Digest digest;
+};
+
+inline constexpr std::uint32_t no_texture = UINT32_MAX;
+
+// Albedo is base colour factor x texture x vertex colour, linear Rec. 709, at most max_albedo.
+inline constexpr float max_albedo = 0.95f;
+
+struct Material {
+    glm::vec4 base_colour{1};  // linear; w is alpha
+    std::uint32_t texture = no_texture;
+    // uv of the texture = (row 0, row 1) . (u, v, 1), from KHR_texture_transform.
+    glm::vec3 texture_u_from_uv{1, 0, 0}, texture_v_from_uv{0, 1, 0};
+    bool masked = false;        // alpha below the cutoff lets rays through
+    float alpha_cutoff = 0.5f;
+    bool double_sided = false;  // reflects on both sides; else its back absorbs
+    Digest digest;
+};
+
+// Triangles of one material. Vertices stand in the order of their first use.
+struct Primitive {
+    std::vector<glm::vec3> positions;   // object space
+    std::vector<glm::uvec3> triangles;  // counter-clockwise seen from the front
+    std::vector<glm::vec2> uvs;         // empty unless the material has a texture
+    std::vector<glm::vec4> colours;     // linear; empty unless the mesh has them
+    std::uint32_t material = 0;
+    Digest digest;
+};
+
+struct Mesh {
+    std::vector<Primitive> primitives;  // sorted by digest
+    Bounds bounds;                      // object space
+    Digest digest;
+};
+
+enum class Role : std::uint8_t { fixed, vegetation };  // "static" and "vegetation"
+
+// One placed mesh. `world_from_object` may mirror; then the winding of the object space still tells the front.
+struct Object {
+    std::uint32_t mesh = 0;
+    Role role = Role::fixed;
+    glm::mat4x3 world_from_object{1};
+    Bounds bounds;  // world
+    Digest digest;  // mesh, place, role
+    std::string name;
+};
+
+// A hand-placed probe. Its name serves `bake_probe` only.
+struct ManualProbe {
+    glm::dvec3 position{};  // world
+    std::string name;
+};
+
+enum class VolumeKind : std::uint8_t { no_probes, interior };
+
+// A closed mesh in world space (closedness is checked by placement, which has the tools for it).
+struct Volume {
+    VolumeKind kind = VolumeKind::no_probes;
+    std::vector<glm::dvec3> positions;
+    std::vector<glm::uvec3> triangles;
+    std::string probe_name;  // interior: `bake_probe`, may be empty
+    std::string name;
+    Digest digest;
+};
+
+enum class LightKind : std::uint8_t { point, spot, directional };
+
+// KHR_lights_punctual, in its own units (candela or lux); range 0 means unlimited.
+struct Light {
+    LightKind kind = LightKind::point;
+    glm::vec3 colour{1};
+    float intensity = 1;
+    float range_m = 0;
+    float inner_cone_radians = 0, outer_cone_radians = 0;
+    glm::vec3 position{}, direction{};  // world; direction in which a spot or directional light shines
+    std::string name;
+};
+
+struct Map {
+    std::vector<Texture> textures;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Object> objects;  // sorted by digest, so that their order does not depend on the files
+    std::vector<ManualProbe> probes;
+    std::vector<Volume> volumes;
+    std::vector<Light> lights;
+    std::vector<std::string> warnings;  // one sentence each
+    // Covers all that can change a bake and nothing else: no names, no order of files, nodes or buffers.
+    Digest content;
+};
+
+}  // namespace drtv::map

@@ -1,0 +1,315 @@
+#include "bakerd/map/import_parts.h"
+
+#include "bakerd/map/accessor.h"
+
+#include <fmt/format.h>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace drtv::map {
+namespace {
+
+// glTF (x, y, z) is world (x, -z, y).
+const glm::dmat4 world_from_gltf(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+
+enum class NodeRole { fixed, vegetation, ignore, probe, no_probes, interior };
+
+struct RoleName {
+    const char* name;
+    NodeRole role;
+};
+constexpr std::array<RoleName, 6> role_names = {{{"static", NodeRole::fixed},
+                                                 {"vegetation", NodeRole::vegetation},
+                                                 {"ignore", NodeRole::ignore},
+                                                 {"probe", NodeRole::probe},
+                                                 {"no_probes", NodeRole::no_probes},
+                                                 {"interior", NodeRole::interior}}};
+
+struct Pending {
+    std::size_t node;
+    glm::dmat4 world_from_parent;
+    NodeRole role;
+    std::string bake_probe;
+};
+
+class NodeImporter {
+  public:
+    NodeImporter(const GltfDocument& document, const MaterialIndices& materials, Map& map, Shared& shared)
+        : document_(document), model_(document.model), materials_(materials), map_(map), shared_(shared), mesh_of_(model_.meshes.size()) {}
+
+    Imported run() {
+        // A stack of our own: a chain of nodes may be deeper than the thread's stack.
+        std::vector<Pending> stack;
+        const std::vector<std::size_t> roots = root_nodes();
+        for (auto node = roots.rbegin(); node != roots.rend(); ++node) stack.push_back({*node, world_from_gltf, NodeRole::fixed, ""});
+        while (!stack.empty()) {
+            Pending pending = std::move(stack.back());
+            stack.pop_back();
+            auto local = local_transform(pending.node);
+            if (!local) return tl::unexpected(local.error());
+            const glm::dmat4 world_from_node = pending.world_from_parent * *local;
+            if (!finite(world_from_node)) return fail(pending.node, "its transform is not finite");
+            if (auto role = read_role(pending); !role) return role;
+            if (auto imported = import_node(pending, world_from_node); !imported) return imported;
+            const std::vector<int>& children = model_.nodes[pending.node].children;
+            for (auto child = children.rbegin(); child != children.rend(); ++child) {
+                stack.push_back({static_cast<std::size_t>(*child), world_from_node, pending.role, pending.bake_probe});
+            }
+        }
+        return {};
+    }
+
+  private:
+    [[nodiscard]] std::string name_of(std::size_t node) const {
+        const std::string& name = model_.nodes[node].name;
+        return name.empty() ? fmt::format("node {}", node) : fmt::format("node {} ('{}')", node, name);
+    }
+
+    [[nodiscard]] tl::unexpected<std::string> fail(std::size_t node, const std::string& rest) const { return tl::unexpected(document_.at(name_of(node) + ": " + rest)); }
+
+    static bool finite(const glm::dmat4& m) {
+        for (glm::length_t c = 0; c < 4; ++c) {
+            for (glm::length_t r = 0; r < 4; ++r) {
+                if (!(std::abs(m[c][r]) < 1e30)) return false;
+            }
+        }
+        return true;
+    }
+
+    // The default scene's roots; of a file without scenes, all nodes that are nobody's child.
+    [[nodiscard]] std::vector<std::size_t> root_nodes() const {
+        std::vector<std::size_t> roots;
+        if (!model_.scenes.empty()) {
+            const int scene = model_.defaultScene >= 0 ? model_.defaultScene : 0;
+            for (int node : model_.scenes[static_cast<std::size_t>(scene)].nodes) roots.push_back(static_cast<std::size_t>(node));
+            return roots;
+        }
+        std::vector<bool> is_child(model_.nodes.size(), false);
+        for (const tinygltf::Node& node : model_.nodes) {
+            for (int child : node.children) is_child[static_cast<std::size_t>(child)] = true;
+        }
+        for (std::size_t n = 0; n < is_child.size(); ++n) {
+            if (!is_child[n]) roots.push_back(n);
+        }
+        return roots;
+    }
+
+    [[nodiscard]] tl::expected<glm::dmat4, std::string> local_transform(std::size_t index) const {
+        const tinygltf::Node& node = model_.nodes[index];
+        glm::dmat4 local(1);
+        if (node.matrix.size() == 16) {
+            for (glm::length_t c = 0; c < 4; ++c) {
+                for (glm::length_t r = 0; r < 4; ++r) local[c][r] = node.matrix[static_cast<std::size_t>(4 * c + r)];
+            }
+            if (local[0][3] != 0 || local[1][3] != 0 || local[2][3] != 0 || local[3][3] != 1) return fail(index, "its matrix is not affine");
+            return local;
+        }
+        const glm::dvec3 translation = node.translation.size() == 3 ? glm::dvec3(node.translation[0], node.translation[1], node.translation[2]) : glm::dvec3(0);
+        const glm::dvec3 scale = node.scale.size() == 3 ? glm::dvec3(node.scale[0], node.scale[1], node.scale[2]) : glm::dvec3(1);
+        glm::dquat rotation(1, 0, 0, 0);
+        if (node.rotation.size() == 4) rotation = glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+        return compose(index, translation, rotation, scale);
+    }
+
+    [[nodiscard]] tl::expected<glm::dmat4, std::string> compose(std::size_t index, const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) const {
+        const double length = glm::length(rotation);
+        if (!(length > 1e-6)) return fail(index, "its rotation is the zero quaternion");
+        glm::dmat4 local(glm::mat3_cast(rotation * (1 / length)));
+        for (glm::length_t c = 0; c < 3; ++c) local[c] *= scale[c];
+        local[3] = glm::dvec4(translation, 1);
+        return local;
+    }
+
+    Imported read_role(Pending& pending) const {
+        const tinygltf::Value& extras = model_.nodes[pending.node].extras;
+        if (!extras.IsObject()) return {};
+        if (extras.Has("bake_role")) {
+            const tinygltf::Value& value = extras.Get("bake_role");
+            if (!value.IsString()) return fail(pending.node, "bake_role must be a string");
+            const std::string& text = value.Get<std::string>();
+            const auto found = std::find_if(role_names.begin(), role_names.end(), [&](const RoleName& r) { return text == r.name; });
+            if (found == role_names.end()) return fail(pending.node, fmt::format("bake_role '{}' is not one of static, vegetation, ignore, probe, no_probes, interior", text));
+            pending.role = found->role;
+        }
+        if (extras.Has("bake_probe")) {
+            const tinygltf::Value& value = extras.Get("bake_probe");
+            if (!value.IsString()) return fail(pending.node, "bake_probe must be a string");
+            pending.bake_probe = value.Get<std::string>();
+        }
+        return {};
+    }
+
+    Imported import_node(const Pending& pending, const glm::dmat4& world_from_node) {
+        if (pending.role == NodeRole::ignore) return {};
+        const tinygltf::Node& node = model_.nodes[pending.node];
+        if (auto light = import_light(pending.node, world_from_node); !light) return light;
+        if (pending.role == NodeRole::probe) {
+            map_.probes.push_back({glm::dvec3(world_from_node[3]), node.name});
+            return {};
+        }
+        if (node.mesh < 0) return {};
+        const auto mesh = mesh_index(static_cast<std::size_t>(node.mesh));
+        if (!mesh) return tl::unexpected(mesh.error());
+        if (*mesh == no_mesh) return {};
+        const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
+        if (instancing == node.extensions.end()) return place(pending, *mesh, world_from_node, node.name);
+        const auto transforms = instance_transforms(pending.node, instancing->second);
+        if (!transforms) return tl::unexpected(transforms.error());
+        for (std::size_t n = 0; n < transforms->size(); ++n) {
+            const glm::dmat4 world_from_instance = world_from_node * (*transforms)[n];
+            if (!finite(world_from_instance)) return fail(pending.node, fmt::format("the transform of instance {} is not finite", n));
+            if (auto placed = place(pending, *mesh, world_from_instance, fmt::format("{}[{}]", node.name, n)); !placed) return placed;
+        }
+        return {};
+    }
+
+    tl::expected<std::uint32_t, std::string> mesh_index(std::size_t gltf_mesh) {
+        std::optional<std::uint32_t>& known = mesh_of_[gltf_mesh];
+        if (!known) {
+            const auto imported = import_mesh(document_, gltf_mesh, materials_, map_, shared_);
+            if (!imported) return imported;
+            known = *imported;
+        }
+        return *known;
+    }
+
+    Imported place(const Pending& pending, std::uint32_t mesh, const glm::dmat4& world_from_object, std::string name) {
+        if (pending.role == NodeRole::no_probes || pending.role == NodeRole::interior) {
+            add_volume(pending, mesh, world_from_object, std::move(name));
+            return {};
+        }
+        Object object;
+        object.mesh = mesh;
+        object.role = pending.role == NodeRole::vegetation ? Role::vegetation : Role::fixed;
+        object.world_from_object = glm::mat4x3(glm::dmat4x3(world_from_object));
+        object.name = std::move(name);
+        const double volume = std::abs(glm::determinant(glm::dmat3(world_from_object)));
+        const double side = std::max({glm::length(glm::dvec3(world_from_object[0])), glm::length(glm::dvec3(world_from_object[1])), glm::length(glm::dvec3(world_from_object[2]))});
+        if (volume <= 1e-9 * side * side * side) {
+            // Scaled flat: the inverse that instancing needs does not exist, so the surface gets a mesh of its own.
+            object.mesh = flattened_mesh(mesh, object.world_from_object);
+            object.world_from_object = glm::mat4x3(1);
+        }
+        for (const Primitive& primitive : map_.meshes[object.mesh].primitives) {
+            for (const glm::vec3& position : primitive.positions) object.bounds.extend(object.world_from_object * glm::vec4(position, 1));
+        }
+        if (!(glm::length(glm::dvec3(object.bounds.low)) < 1e9) || !(glm::length(glm::dvec3(object.bounds.high)) < 1e9)) {
+            return fail(pending.node, "it reaches farther than 10^9 m from the origin");
+        }
+        object.digest = digest_object(object, map_);
+        map_.objects.push_back(std::move(object));
+        return {};
+    }
+
+    std::uint32_t flattened_mesh(std::uint32_t mesh, const glm::mat4x3& world_from_object) {
+        Mesh flat = map_.meshes[mesh];
+        flat.bounds = {};
+        for (Primitive& primitive : flat.primitives) {
+            for (glm::vec3& position : primitive.positions) {
+                position = world_from_object * glm::vec4(position, 1);
+                flat.bounds.extend(position);
+            }
+            primitive.digest = digest_primitive(primitive, map_);
+        }
+        flat.digest = digest_mesh(flat);
+        const auto [entry, added] = shared_.meshes.try_emplace(flat.digest, static_cast<std::uint32_t>(map_.meshes.size()));
+        if (added) map_.meshes.push_back(std::move(flat));
+        return entry->second;
+    }
+
+    void add_volume(const Pending& pending, std::uint32_t mesh, const glm::dmat4& world_from_object, std::string name) {
+        Volume volume;
+        volume.kind = pending.role == NodeRole::interior ? VolumeKind::interior : VolumeKind::no_probes;
+        volume.probe_name = volume.kind == VolumeKind::interior ? pending.bake_probe : "";
+        volume.name = std::move(name);
+        for (const Primitive& primitive : map_.meshes[mesh].primitives) {
+            const auto first = static_cast<std::uint32_t>(volume.positions.size());
+            for (const glm::vec3& position : primitive.positions) volume.positions.emplace_back(world_from_object * glm::dvec4(position, 1));
+            for (const glm::uvec3& triangle : primitive.triangles) volume.triangles.push_back(triangle + first);
+        }
+        volume.digest = digest_volume(volume);
+        map_.volumes.push_back(std::move(volume));
+    }
+
+    tl::expected<std::vector<glm::dmat4>, std::string> instance_transforms(std::size_t node, const tinygltf::Value& extension) const {
+        std::vector<float> translations, rotations, scales;
+        std::size_t count = SIZE_MAX;
+        if (!extension.Has("attributes") || !extension.Get("attributes").IsObject()) return fail(node, "EXT_mesh_gpu_instancing has no attributes");
+        const tinygltf::Value& attributes = extension.Get("attributes");
+        const auto read = [&](const char* name, std::size_t components, std::vector<float>& out) -> Imported {
+            if (!attributes.Has(name)) return {};
+            const tinygltf::Value& value = attributes.Get(name);
+            if (!value.IsInt() || value.GetNumberAsInt() < 0 || static_cast<std::size_t>(value.GetNumberAsInt()) >= model_.accessors.size()) return fail(node, fmt::format("EXT_mesh_gpu_instancing: {} names no accessor", name));
+            auto values = read_floats(document_, value.GetNumberAsInt(), components);
+            if (!values) return tl::unexpected(values.error());
+            out = std::move(*values);
+            const std::size_t elements = out.size() / components;
+            if (count != SIZE_MAX && elements != count) return fail(node, fmt::format("EXT_mesh_gpu_instancing: {} has {} elements, others have {}", name, elements, count));
+            count = elements;
+            return {};
+        };
+        if (auto done = read("TRANSLATION", 3, translations); !done) return tl::unexpected(done.error());
+        if (auto done = read("ROTATION", 4, rotations); !done) return tl::unexpected(done.error());
+        if (auto done = read("SCALE", 3, scales); !done) return tl::unexpected(done.error());
+        if (count == SIZE_MAX) return fail(node, "EXT_mesh_gpu_instancing has none of TRANSLATION, ROTATION, SCALE");
+        std::vector<glm::dmat4> transforms;
+        for (std::size_t n = 0; n < count; ++n) {
+            const glm::dvec3 t = translations.empty() ? glm::dvec3(0) : glm::dvec3(translations[3 * n], translations[3 * n + 1], translations[3 * n + 2]);
+            const glm::dvec3 s = scales.empty() ? glm::dvec3(1) : glm::dvec3(scales[3 * n], scales[3 * n + 1], scales[3 * n + 2]);
+            const glm::dquat r = rotations.empty() ? glm::dquat(1, 0, 0, 0) : glm::dquat(rotations[4 * n + 3], rotations[4 * n], rotations[4 * n + 1], rotations[4 * n + 2]);
+            const auto local = compose(node, t, r, s);
+            if (!local) return tl::unexpected(local.error());
+            transforms.push_back(*local);
+        }
+        return transforms;
+    }
+
+    Imported import_light(std::size_t index, const glm::dmat4& world_from_node) {
+        const auto found = model_.nodes[index].extensions.find("KHR_lights_punctual");
+        if (found == model_.nodes[index].extensions.end()) return {};
+        const tinygltf::Value& reference = found->second;
+        if (!reference.Has("light") || !reference.Get("light").IsInt()) return fail(index, "KHR_lights_punctual names no light");
+        const int number = reference.Get("light").GetNumberAsInt();
+        if (number < 0 || static_cast<std::size_t>(number) >= model_.lights.size()) return fail(index, fmt::format("light {} does not exist, the file has {}", number, model_.lights.size()));
+        const tinygltf::Light& source = model_.lights[static_cast<std::size_t>(number)];
+        Light light;
+        if (source.type == "spot") light.kind = LightKind::spot;
+        else if (source.type == "directional") light.kind = LightKind::directional;
+        else if (source.type != "point") return fail(index, fmt::format("light {}: type '{}' is unknown", number, source.type));
+        for (std::size_t k = 0; k < 3 && k < source.color.size(); ++k) light.colour[static_cast<glm::length_t>(k)] = static_cast<float>(source.color[k]);
+        light.intensity = static_cast<float>(source.intensity);
+        light.range_m = static_cast<float>(source.range);
+        if (light.kind == LightKind::spot) {
+            light.inner_cone_radians = static_cast<float>(source.spot.innerConeAngle);
+            light.outer_cone_radians = static_cast<float>(source.spot.outerConeAngle);
+        }
+        if (!(light.intensity >= 0) || !std::isfinite(light.intensity) || !(light.range_m >= 0)) return fail(index, fmt::format("light {}: intensity {} or range {} is not valid", number, light.intensity, light.range_m));
+        light.position = glm::vec3(world_from_node[3]);
+        const glm::dvec3 shines = -glm::dvec3(world_from_node[2]);  // along the node's -z
+        light.direction = glm::length(shines) > 0 ? glm::vec3(glm::normalize(shines)) : glm::vec3(0, 0, -1);
+        light.name = model_.nodes[index].name;
+        map_.lights.push_back(std::move(light));
+        return {};
+    }
+
+    const GltfDocument& document_;
+    const tinygltf::Model& model_;
+    const MaterialIndices& materials_;
+    Map& map_;
+    Shared& shared_;
+    std::vector<std::optional<std::uint32_t>> mesh_of_;  // by glTF mesh, once imported
+};
+
+}  // namespace
+
+Imported import_nodes(const GltfDocument& document, const MaterialIndices& materials, Map& map, Shared& shared) {
+    return NodeImporter(document, materials, map, shared).run();
+}
+
+}  // namespace drtv::map

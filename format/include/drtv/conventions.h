@@ -1,0 +1,68 @@
+// Conventions shared by baker and game: axes, basis, spherical harmonics, fixed point. The normative text is
+// format/SPEC.md, section 2; every constant here stands there too.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace drtv {
+
+using Float3 = std::array<float, 3>;
+using Float4 = std::array<float, 4>;
+
+// World: right-handed, z up, metres. A sector is a square of this side, all heights (s24).
+inline constexpr int sector_size_m = 64;
+
+// Positions are whole multiples of 2^-10 m, so that 16 bits span one sector's side exactly.
+inline constexpr int position_units_per_m = 1024;
+inline constexpr float position_unit_m = 1.0f / position_units_per_m;
+
+inline constexpr std::size_t basis_count = 4;
+inline constexpr std::size_t sh_count = 4;
+inline constexpr std::size_t channel_count = 3;
+
+// The transfer basis (s40): three directions around up, one straight down.
+inline constexpr std::array<Float3, basis_count> transfer_basis = {{{-0.408248f, -0.707107f, 0.577350f},
+                                                                    {-0.408248f, 0.707107f, 0.577350f},
+                                                                    {0.816497f, 0.0f, 0.577350f},
+                                                                    {0.0f, 0.0f, -1.0f}}};
+
+// Real spherical harmonics of bands 0 and 1, no Condon-Shortley sign.
+inline constexpr float sh_y0 = 0.282095f;
+inline constexpr float sh_y1 = 0.488603f;
+
+// Y0..Y3 at the unit direction `w`, in the order 1, y, z, x.
+[[nodiscard]] constexpr Float4 evaluate_sh(const Float3& w) {
+    return {sh_y0, sh_y1 * w[1], sh_y1 * w[2], sh_y1 * w[0]};
+}
+
+inline constexpr std::size_t max_probes = 255;  // a sector's; index 255 means "no probe"
+inline constexpr std::uint8_t no_probe = 255;
+
+inline constexpr std::size_t grid_size = 16;  // cells along each axis
+inline constexpr std::size_t grid_cell_count = grid_size * grid_size * grid_size;
+
+// Fixed point: value = scale * q / 32767, q in [-32767, 32767]; -32768 is never written.
+inline constexpr float fixed_point_max = 32767.0f;
+inline constexpr float transfer_scale = 0.5f;
+inline constexpr float sky_visibility_scale = 1.0f;
+
+// Bounds of any passive scene's transfer (DESIGN section 2): 1/(2 sqrt pi) for i = 0 and sqrt(3/(4 pi)) else.
+inline constexpr float transfer_bound_y0 = 0.2821f;
+inline constexpr float transfer_bound_y1 = 0.4887f;
+
+[[nodiscard]] constexpr float decode_fixed(std::int16_t q, float scale) {
+    return static_cast<float>(q) / fixed_point_max * scale;
+}
+
+// Nearest code to `value`, ties away from zero, saturated to +-32767. NaN gives 0.
+[[nodiscard]] constexpr std::int16_t encode_fixed(float value, float scale) {
+    const float q = value / scale * fixed_point_max;
+    if (!(q == q)) return 0;
+    if (q >= fixed_point_max) return 32767;
+    if (q <= -fixed_point_max) return -32767;
+    return static_cast<std::int16_t>(q + (q < 0 ? -0.5f : 0.5f));
+}
+
+}  // namespace drtv

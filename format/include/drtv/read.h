@@ -1,0 +1,67 @@
+// Reading a sector file from untrusted bytes. Never throws on bad input, never reads outside `bytes`, allocates
+// no more than a sector's own size (at most a few hundred KiB).
+#pragma once
+
+#include <drtv/sector.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace drtv {
+
+enum class ReadError : std::uint8_t {
+    none,
+    not_a_sector_file,    // too short, or another magic
+    unsupported_version,  // a newer major version
+    truncated,            // the file is shorter than it says
+    trailing_bytes,       // the file is longer than it says
+    bad_header,           // a header field breaks its rule
+    bad_table,            // a section entry breaks its rule
+    checksum_mismatch,    // header or section bytes were changed
+    missing_section,      // a required section is not there
+    bad_section,          // a section's content breaks its rule
+};
+
+struct [[nodiscard]] ReadStatus {
+    ReadError error = ReadError::none;
+    std::uint64_t offset = 0;  // byte in the file at which the rule is broken
+    std::string message;       // what, where, value; empty when there is no error
+
+    [[nodiscard]] bool ok() const { return error == ReadError::none; }
+};
+
+enum class SectionKind : std::uint16_t {
+    bake = 1,
+    positions = 2,
+    sky_visibility = 3,
+    transfer = 4,
+    grid = 5,
+    statistics = 6,
+};
+
+enum class Codec : std::uint8_t { raw = 0, zstd = 1 };
+
+// One line of the table of sections, as it stands in the file.
+struct SectionEntry {
+    std::uint16_t kind = 0;  // a SectionKind, or one of a later minor version, which is skipped
+    std::uint16_t version = 0;
+    std::uint8_t codec = 0;
+    std::uint32_t offset = 0;       // from the start of the file, a multiple of 16
+    std::uint32_t stored_bytes = 0; // in the file
+    std::uint32_t raw_bytes = 0;    // after decoding
+    std::uint64_t checksum = 0;     // XXH64 of the stored bytes
+};
+
+// "bake", "positions", ... or "unknown".
+[[nodiscard]] std::string_view name_of_section(std::uint16_t kind);
+
+// Checks structure and checksums and gives the table. On error `entries` is empty.
+ReadStatus read_section_table(std::span<const std::uint8_t> bytes, std::vector<SectionEntry>& entries);
+
+// Reads the whole sector. On error `sector` is left as it was.
+ReadStatus read_sector(std::span<const std::uint8_t> bytes, Sector& sector);
+
+}  // namespace drtv

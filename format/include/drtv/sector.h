@@ -1,0 +1,88 @@
+// A sector in memory: the numbers of one sector file, still in their stored fixed-point form, so that reading
+// and writing lose nothing. Layout, units and rules: format/SPEC.md.
+#pragma once
+
+#include <drtv/conventions.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace drtv {
+
+enum class ProbeKind : std::uint8_t { ground = 0, vegetation = 1, manual = 2 };
+
+// "ground", "vegetation" or "manual".
+[[nodiscard]] std::string_view name_of(ProbeKind kind);
+
+struct Probe {
+    // Offset from the sector's corner in units of 2^-10 m (x, y) and 2^(shift - 10) m (z).
+    std::array<std::uint16_t, 3> position{};
+    ProbeKind kind = ProbeKind::ground;
+    // [channel r, g, b][basis direction][SH coefficient], scale 0.5: E/pi from a sky of radiance Y_i, by bounce.
+    std::array<std::array<std::array<std::int16_t, sh_count>, basis_count>, channel_count> transfer{};
+    // [basis direction], scale 1: open sky = 1; the last one is always 0 (s21).
+    std::array<std::int16_t, basis_count> sky_visibility{};
+
+    bool operator==(const Probe&) const = default;
+};
+
+// Nearest probe a cell. Cell (x, y, z) stands at index x + 16 y + 256 z; cells are 4 m wide.
+struct Grid {
+    std::int32_t z_origin_units = 0;      // bottom of the lowest cells, 2^-10 m
+    std::uint32_t cell_height_units = 1;  // 2^-10 m, at least 1
+    std::array<std::uint8_t, grid_cell_count> cells{};
+
+    bool operator==(const Grid&) const = default;
+};
+
+// What was asked of the baker, and who it was. Equal settings_key: comparable files.
+struct BakeRecord {
+    std::uint32_t rays = 0;      // primary rays a probe
+    std::uint32_t bounces = 0;   // surface bounces
+    float reach_m = 0;           // farther than this from the probe is sky
+    float min_distance_m = 0;    // between automatic probes
+    std::array<std::uint8_t, 32> settings_key{};  // SHA-256 over settings, format version, baker and ISA class
+    bool operator==(const BakeRecord&) const = default;
+};
+
+// Counts of the bake: a pure function of the map, like all else in the file (no times).
+struct Statistics {
+    std::uint32_t candidates = 0;         // columns' proposals inside the sector
+    std::uint32_t moved_out = 0;          // probes moved out of a solid
+    std::uint32_t dropped_in_solid = 0;   // probes for which no free place was found
+    std::uint32_t removed_by_volume = 0;  // inside a no_probes volume
+    std::uint32_t thinned = 0;            // given up to stay within 255
+    float used_distance_m = 0;            // minimal distance in the end; min_distance_m unless thinned
+    std::uint64_t rays = 0;               // all rays of the integration
+    std::uint64_t back_hits = 0;          // of these, hits on the back of a one-sided surface
+
+    bool operator==(const Statistics&) const = default;
+};
+
+struct Sector {
+    std::int32_t i = 0, j = 0;        // world square [64 i, 64 i + 64) x [64 j, 64 j + 64)
+    std::int32_t z_origin_units = 0;  // height of position z = 0, 2^-10 m
+    std::uint8_t z_shift = 0;         // z step is 2^(z_shift - 10) m
+    std::vector<Probe> probes;        // at most 255
+    Grid grid;
+    BakeRecord bake;
+    Statistics statistics;
+
+    bool operator==(const Sector&) const = default;
+};
+
+// A sector coordinate is refused beyond this, so that no position leaves the exact range of 32-bit units.
+inline constexpr std::int32_t max_sector_coordinate = 1 << 14;
+inline constexpr std::uint8_t max_z_shift = 10;
+inline constexpr std::int32_t max_z_origin_units = 1 << 30;
+
+// World position of a probe in units of 2^-10 m, exact.
+[[nodiscard]] std::array<std::int32_t, 3> position_units(const Sector& sector, const Probe& probe);
+
+// World position in metres; exact in float within 16 km of the origin.
+[[nodiscard]] Float3 position_m(const Sector& sector, const Probe& probe);
+
+}  // namespace drtv

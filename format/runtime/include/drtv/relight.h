@@ -1,0 +1,29 @@
+// Relighting a probe on the CPU (s27-s32) and shading with its colours (s40-s44), as the talk's code does it.
+// All colours are E/pi, linear Rec. 709. No allocation.
+#pragma once
+
+#include <drtv/sector.h>
+
+#include <array>
+
+namespace drtv {
+
+// Radiance of the distant light as SH, a vector a channel: [r, g, b][Y0..Y3].
+using DistantLight = std::array<Float4, channel_count>;
+
+// What a relit probe is: one colour for each direction of the transfer basis.
+using BasisColours = std::array<Float3, basis_count>;
+
+// Sky of one radiance over the upper hemisphere, written as the constant SH the exact answers use.
+[[nodiscard]] DistantLight constant_sky(const Float3& radiance);
+
+// SH of a sun of `irradiance` (on a surface facing it) towards the unit direction `to_sun`.
+[[nodiscard]] DistantLight directional_sun(const Float3& irradiance, const Float3& to_sun);
+
+// Bounce of sky and sun plus the direct sky weighted by visibility (s28-s29).
+[[nodiscard]] BasisColours relight(const Probe& probe, const DistantLight& sky, const DistantLight& sun);
+
+// Ambient at a unit normal by the basis weights of the shader (s43-s44).
+[[nodiscard]] Float3 shade_ambient(const BasisColours& colours, const Float3& normal);
+
+}  // namespace drtv

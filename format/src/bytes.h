@@ -1,0 +1,31 @@
+// Explicit little-endian loads and stores; sizes are checked by the caller before.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace drtv {
+
+template <class Unsigned>
+[[nodiscard]] inline Unsigned load_le(std::span<const std::uint8_t> bytes, std::size_t offset) {
+    std::uint64_t value = 0;
+    for (std::size_t k = 0; k < sizeof(Unsigned); ++k) value |= std::uint64_t{bytes[offset + k]} << (8 * k);
+    return static_cast<Unsigned>(value);
+}
+
+template <class Unsigned>
+inline void append_le(std::vector<std::uint8_t>& bytes, Unsigned value) {
+    for (std::size_t k = 0; k < sizeof(Unsigned); ++k) {
+        bytes.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * k)));
+    }
+}
+
+[[nodiscard]] inline std::int16_t load_i16(std::span<const std::uint8_t> b, std::size_t o) { return static_cast<std::int16_t>(load_le<std::uint16_t>(b, o)); }
+[[nodiscard]] inline std::int32_t load_i32(std::span<const std::uint8_t> b, std::size_t o) { return static_cast<std::int32_t>(load_le<std::uint32_t>(b, o)); }
+[[nodiscard]] inline float load_f32(std::span<const std::uint8_t> b, std::size_t o) { return std::bit_cast<float>(load_le<std::uint32_t>(b, o)); }
+inline void append_f32(std::vector<std::uint8_t>& b, float value) { append_le(b, std::bit_cast<std::uint32_t>(value)); }
+
+}  // namespace drtv

@@ -1,0 +1,152 @@
+#include <drtv/validate.h>
+
+#include <drtv/read.h>
+#include <drtv/sector.h>
+
+#include "layout.h"
+
+#include <array>
+#include <cmath>
+
+namespace drtv {
+namespace {
+
+enum IssueIndex : std::size_t {
+    unreadable,
+    checksum,
+    reserved_code,
+    sky_visibility_range,
+    sky_visibility_down,
+    transfer_range,
+    grid_reference,
+    grid_no_probe,
+    settings_range,
+    duplicate_position,
+};
+
+constexpr std::array<Issue, 10> issues = {{
+    {"STRUCTURE", Severity::error, "header, table or a section breaks a structural rule"},
+    {"CHECKSUM", Severity::error, "a stored checksum does not match the bytes it covers"},
+    {"FIXED_POINT_RESERVED", Severity::error, "a coefficient has the reserved code -32768"},
+    {"SKY_VISIBILITY_RANGE", Severity::error, "a sky visibility lies outside [0, 1]"},
+    {"SKY_VISIBILITY_DOWN", Severity::error, "the sky visibility of the downward direction is not 0"},
+    {"TRANSFER_RANGE", Severity::error, "a transfer coefficient is larger than a passive scene allows"},
+    {"GRID_REFERENCE", Severity::error, "a grid cell names a probe that is not there"},
+    {"GRID_NO_PROBE", Severity::error, "a grid cell is empty although the sector has probes"},
+    {"SETTINGS_RANGE", Severity::error, "a recorded setting lies outside its range"},
+    {"DUPLICATE_POSITION", Severity::error, "two probes stand at the same position"},
+}};
+
+class Findings {
+  public:
+    explicit Findings(std::size_t max) : max_(max) {}
+
+    void add(std::size_t issue, std::uint64_t offset, std::string path, std::string message) {
+        if (found_.size() < max_) found_.push_back({&issues[issue], offset, std::move(path), std::move(message)});
+    }
+    [[nodiscard]] std::vector<Finding> take() { return std::move(found_); }
+
+  private:
+    std::size_t max_;
+    std::vector<Finding> found_;
+};
+
+std::uint64_t section_offset(const std::vector<SectionEntry>& entries, SectionKind kind) {
+    for (const SectionEntry& entry : entries) {
+        // Inside a compressed section no byte stands for one value: its start has to do.
+        if (entry.kind == static_cast<std::uint16_t>(kind)) return entry.offset;
+    }
+    return 0;
+}
+
+std::string probe_path(std::size_t p) { return "probe[" + std::to_string(p) + "]"; }
+std::string index(std::size_t n) { return "[" + std::to_string(n) + "]"; }
+
+void check_sky_visibility(const Sector& sector, std::uint64_t start, Findings& findings) {
+    for (std::size_t p = 0; p < sector.probes.size(); ++p) {
+        for (std::size_t b = 0; b < basis_count; ++b) {
+            const std::int16_t q = sector.probes[p].sky_visibility[b];
+            const std::uint64_t offset = start + p * layout::sky_visibility_bytes + 2 * b;
+            const std::string path = probe_path(p) + ".sky_visibility" + index(b);
+            const std::string value = "code " + std::to_string(q);
+            if (q == INT16_MIN) findings.add(reserved_code, offset, path, value + " is reserved");
+            else if (b == basis_count - 1 && q != 0) findings.add(sky_visibility_down, offset, path, value + ", must be 0");
+            else if (q < 0) findings.add(sky_visibility_range, offset, path, value + " is negative");
+        }
+    }
+}
+
+void check_transfer(const Sector& sector, std::uint64_t start, Findings& findings) {
+    static constexpr std::array<char, channel_count> channel_name = {'r', 'g', 'b'};
+    for (std::size_t p = 0; p < sector.probes.size(); ++p) {
+        std::uint64_t offset = start + p * layout::transfer_bytes;
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            for (std::size_t b = 0; b < basis_count; ++b) {
+                for (std::size_t i = 0; i < sh_count; ++i, offset += 2) {
+                    const std::int16_t q = sector.probes[p].transfer[c][b][i];
+                    const float value = decode_fixed(q, transfer_scale);
+                    const float bound = i == 0 ? transfer_bound_y0 : transfer_bound_y1;
+                    if (q != INT16_MIN && std::abs(value) <= bound) continue;
+                    const std::string path = probe_path(p) + ".transfer." + channel_name[c] + index(b) + index(i);
+                    if (q == INT16_MIN) findings.add(reserved_code, offset, path, "code -32768 is reserved");
+                    else findings.add(transfer_range, offset, path, std::to_string(value) + " is beyond " + std::to_string(bound));
+                }
+            }
+        }
+    }
+}
+
+void check_grid(const Sector& sector, std::uint64_t start, Findings& findings) {
+    for (std::size_t cell = 0; cell < grid_cell_count; ++cell) {
+        const std::uint8_t probe = sector.grid.cells[cell];
+        const std::uint64_t offset = start + layout::grid_header_bytes + cell;
+        const std::string path = "grid.cells" + index(cell);
+        if (probe == no_probe && !sector.probes.empty()) {
+            findings.add(grid_no_probe, offset, path, "names no probe, the sector has " + std::to_string(sector.probes.size()));
+        } else if (probe != no_probe && probe >= sector.probes.size()) {
+            findings.add(grid_reference, offset, path,
+                         "names probe " + std::to_string(probe) + ", the sector has " + std::to_string(sector.probes.size()));
+        }
+    }
+}
+
+void check_positions(const Sector& sector, std::uint64_t start, Findings& findings) {
+    for (std::size_t p = 1; p < sector.probes.size(); ++p) {
+        for (std::size_t q = 0; q < p; ++q) {
+            if (sector.probes[p].position != sector.probes[q].position) continue;
+            findings.add(duplicate_position, start + p * layout::position_bytes, probe_path(p) + ".position",
+                         "is that of probe " + std::to_string(q));
+        }
+    }
+}
+
+void check_bake(const BakeRecord& bake, std::uint64_t start, Findings& findings) {
+    if (bake.rays == 0) findings.add(settings_range, start, "settings.rays", "is 0");
+    if (!(bake.reach_m > 0)) findings.add(settings_range, start + 8, "settings.reach", std::to_string(bake.reach_m) + " m is not positive");
+    if (!(bake.min_distance_m > 0)) {
+        findings.add(settings_range, start + 12, "settings.min_distance", std::to_string(bake.min_distance_m) + " m is not positive");
+    }
+}
+
+}  // namespace
+
+std::span<const Issue> all_issues() { return issues; }
+
+std::vector<Finding> validate_sector(std::span<const std::uint8_t> bytes, std::size_t max_findings) {
+    Findings findings(max_findings);
+    Sector sector;
+    if (const ReadStatus status = read_sector(bytes, sector); !status.ok()) {
+        findings.add(status.error == ReadError::checksum_mismatch ? checksum : unreadable, status.offset, "", status.message);
+        return findings.take();
+    }
+    std::vector<SectionEntry> entries;
+    if (!read_section_table(bytes, entries).ok()) return findings.take();
+    check_bake(sector.bake, section_offset(entries, SectionKind::bake), findings);
+    check_positions(sector, section_offset(entries, SectionKind::positions), findings);
+    check_sky_visibility(sector, section_offset(entries, SectionKind::sky_visibility), findings);
+    check_transfer(sector, section_offset(entries, SectionKind::transfer), findings);
+    check_grid(sector, section_offset(entries, SectionKind::grid), findings);
+    return findings.take();
+}
+
+}  // namespace drtv

@@ -1,0 +1,162 @@
+#include <drtv/write.h>
+
+#include "bytes.h"
+#include "checksum.h"
+#include "layout.h"
+
+#include <zstd.h>
+
+#include <cassert>
+
+namespace drtv {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// High enough to be worth the time once, low enough to stay under a millisecond a sector.
+constexpr int zstd_level = 12;
+
+Bytes bake_section(const BakeRecord& bake) {
+    Bytes bytes;
+    append_le(bytes, bake.rays);
+    append_le(bytes, bake.bounces);
+    append_f32(bytes, bake.reach_m);
+    append_f32(bytes, bake.min_distance_m);
+    bytes.insert(bytes.end(), bake.settings_key.begin(), bake.settings_key.end());
+    return bytes;
+}
+
+Bytes positions_section(const std::vector<Probe>& probes) {
+    Bytes bytes;
+    for (const Probe& probe : probes) {
+        for (std::uint16_t axis : probe.position) append_le(bytes, axis);
+        bytes.push_back(static_cast<std::uint8_t>(probe.kind));
+        bytes.push_back(0);
+    }
+    return bytes;
+}
+
+Bytes sky_visibility_section(const std::vector<Probe>& probes) {
+    Bytes bytes;
+    for (const Probe& probe : probes) {
+        for (std::int16_t q : probe.sky_visibility) append_le(bytes, static_cast<std::uint16_t>(q));
+    }
+    return bytes;
+}
+
+Bytes transfer_section(const std::vector<Probe>& probes) {
+    Bytes bytes;
+    for (const Probe& probe : probes) {
+        for (const auto& channel : probe.transfer) {
+            for (const auto& row : channel) {
+                for (std::int16_t q : row) append_le(bytes, static_cast<std::uint16_t>(q));
+            }
+        }
+    }
+    return bytes;
+}
+
+Bytes grid_section(const Grid& grid) {
+    Bytes bytes;
+    append_le(bytes, static_cast<std::uint32_t>(grid.z_origin_units));
+    append_le(bytes, grid.cell_height_units);
+    append_le(bytes, std::uint64_t{0});
+    bytes.insert(bytes.end(), grid.cells.begin(), grid.cells.end());
+    return bytes;
+}
+
+Bytes statistics_section(const Statistics& s) {
+    Bytes bytes;
+    for (std::uint32_t n : {s.candidates, s.moved_out, s.dropped_in_solid, s.removed_by_volume, s.thinned}) append_le(bytes, n);
+    append_f32(bytes, s.used_distance_m);
+    append_le(bytes, s.rays);
+    append_le(bytes, s.back_hits);
+    return bytes;
+}
+
+struct StoredSection {
+    SectionEntry entry;
+    Bytes bytes;
+};
+
+StoredSection store_section(SectionKind kind, Bytes raw, Codec codec) {
+    StoredSection section;
+    section.entry.kind = static_cast<std::uint16_t>(kind);
+    section.entry.version = 1;
+    section.entry.raw_bytes = static_cast<std::uint32_t>(raw.size());
+    section.bytes = std::move(raw);
+    if (codec == Codec::zstd && !section.bytes.empty()) {
+        Bytes packed(ZSTD_compressBound(section.bytes.size()));
+        const std::size_t size =
+            ZSTD_compress(packed.data(), packed.size(), section.bytes.data(), section.bytes.size(), zstd_level);
+        if (!ZSTD_isError(size) && size < section.bytes.size()) {
+            packed.resize(size);
+            section.bytes = std::move(packed);
+            section.entry.codec = static_cast<std::uint8_t>(Codec::zstd);
+        }
+    }
+    section.entry.stored_bytes = static_cast<std::uint32_t>(section.bytes.size());
+    section.entry.checksum = xxh64(section.bytes);
+    return section;
+}
+
+void append_entry(Bytes& bytes, const SectionEntry& entry) {
+    append_le(bytes, entry.kind);
+    append_le(bytes, entry.version);
+    append_le(bytes, entry.codec);
+    bytes.insert(bytes.end(), 3, std::uint8_t{0});
+    append_le(bytes, entry.offset);
+    append_le(bytes, entry.stored_bytes);
+    append_le(bytes, entry.raw_bytes);
+    append_le(bytes, std::uint32_t{0});
+    append_le(bytes, entry.checksum);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions& options) {
+    assert(sector.probes.size() <= max_probes && sector.z_shift <= max_z_shift);
+    std::vector<StoredSection> sections;
+    sections.push_back(store_section(SectionKind::bake, bake_section(sector.bake), options.codec));
+    sections.push_back(store_section(SectionKind::positions, positions_section(sector.probes), options.codec));
+    sections.push_back(store_section(SectionKind::sky_visibility, sky_visibility_section(sector.probes), options.codec));
+    sections.push_back(store_section(SectionKind::transfer, transfer_section(sector.probes), options.codec));
+    sections.push_back(store_section(SectionKind::grid, grid_section(sector.grid), options.codec));
+    sections.push_back(store_section(SectionKind::statistics, statistics_section(sector.statistics), options.codec));
+
+    std::size_t end = layout::header_bytes + sections.size() * layout::entry_bytes;
+    for (StoredSection& section : sections) {
+        section.entry.offset = static_cast<std::uint32_t>(layout::align(end));
+        end = section.entry.offset + section.bytes.size();
+    }
+
+    Bytes table;
+    for (const StoredSection& section : sections) append_entry(table, section.entry);
+
+    Bytes file;
+    file.reserve(end);
+    append_le(file, layout::magic);
+    append_le(file, layout::major_version);
+    append_le(file, layout::minor_version);
+    append_le(file, static_cast<std::uint32_t>(end));
+    append_le(file, static_cast<std::uint32_t>(sections.size()));
+    append_le(file, static_cast<std::uint32_t>(sector.i));
+    append_le(file, static_cast<std::uint32_t>(sector.j));
+    append_le(file, static_cast<std::uint32_t>(sector.z_origin_units));
+    append_le(file, static_cast<std::uint16_t>(sector.probes.size()));
+    append_le(file, sector.z_shift);
+    file.resize(layout::header::checksum, 0);
+
+    // The header's checksum runs over its first 56 bytes and the table.
+    Bytes covered = file;
+    covered.insert(covered.end(), table.begin(), table.end());
+    append_le(file, xxh64(covered));
+    file.insert(file.end(), table.begin(), table.end());
+    for (const StoredSection& section : sections) {
+        file.resize(section.entry.offset, 0);
+        file.insert(file.end(), section.bytes.begin(), section.bytes.end());
+    }
+    return file;
+}
+
+}  // namespace drtv

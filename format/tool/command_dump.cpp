@@ -1,0 +1,109 @@
+#include "commands.h"
+#include "files.h"
+#include "json_writer.h"
+
+#include <drtv/read.h>
+
+#include <cstdio>
+
+namespace drtv::tool {
+namespace {
+
+std::string hex(const std::array<std::uint8_t, 32>& bytes) {
+    static constexpr char digits[] = "0123456789abcdef";
+    std::string text;
+    for (std::uint8_t byte : bytes) {
+        text += digits[byte >> 4];
+        text += digits[byte & 15];
+    }
+    return text;
+}
+
+void append_probe(JsonWriter& json, const Sector& sector, const Probe& probe) {
+    json.begin_object();
+    json.key("position").array(position_m(sector, probe));
+    json.key("kind").value(name_of(probe.kind));
+    json.key("transfer").begin_array();
+    for (const auto& channel : probe.transfer) {
+        json.begin_array();
+        for (const auto& row : channel) {
+            json.begin_array();
+            for (std::int16_t q : row) json.value(decode_fixed(q, transfer_scale));
+            json.end_array();
+        }
+        json.end_array();
+    }
+    json.end_array();
+    json.key("sky_visibility").begin_array();
+    for (std::int16_t q : probe.sky_visibility) json.value(decode_fixed(q, sky_visibility_scale));
+    json.end_array();
+    json.end_object();
+}
+
+void append_settings(JsonWriter& json, const BakeRecord& bake) {
+    json.key("settings").begin_object();
+    json.key("rays").value(bake.rays).key("bounces").value(bake.bounces);
+    json.key("reach").value(bake.reach_m).key("min_distance").value(bake.min_distance_m);
+    json.key("key").value(hex(bake.settings_key)).end_object();
+}
+
+void append_grid(JsonWriter& json, const Sector& sector) {
+    const Float3 origin = {static_cast<float>(sector.i * sector_size_m), static_cast<float>(sector.j * sector_size_m),
+                           static_cast<float>(sector.grid.z_origin_units) * position_unit_m};
+    constexpr float cell_width_m = static_cast<float>(sector_size_m) / grid_size;
+    const Float3 cell = {cell_width_m, cell_width_m, static_cast<float>(sector.grid.cell_height_units) * position_unit_m};
+    json.key("grid").begin_object().key("origin").array(origin).key("cell").array(cell);
+    json.key("size").begin_array().value(16).value(16).value(16).end_array();
+    json.key("cells").begin_array();
+    for (std::uint8_t probe : sector.grid.cells) json.value(unsigned{probe});
+    json.end_array().end_object();
+}
+
+void append_statistics(JsonWriter& json, const Statistics& s) {
+    json.key("statistics").begin_object();
+    json.key("candidates").value(s.candidates).key("moved_out").value(s.moved_out);
+    json.key("dropped_in_solid").value(s.dropped_in_solid).key("removed_by_volume").value(s.removed_by_volume);
+    json.key("thinned").value(s.thinned).key("used_distance").value(s.used_distance_m);
+    json.key("rays").value(s.rays).key("back_hits").value(s.back_hits).end_object();
+}
+
+}  // namespace
+
+int run_dump(Arguments arguments) {
+    std::string path;
+    bool as_json = false;
+    for (const std::string& argument : arguments) {
+        if (argument == "--json") as_json = true;
+        else if (path.empty() && !argument.starts_with("-")) path = argument;
+        else path = "-";
+    }
+    if (!as_json || path.empty() || path == "-") {
+        complain("usage is: drtv dump FILE --json");
+        return exit_usage;
+    }
+    std::string error;
+    const auto bytes = read_file(path, error);
+    if (!bytes) {
+        complain(error);
+        return exit_unreadable;
+    }
+    Sector sector;
+    if (const ReadStatus status = read_sector(*bytes, sector); !status.ok()) {
+        complain(path + ": " + status.message);
+        return exit_invalid;
+    }
+    JsonWriter json;
+    json.begin_object().key("format_version").value("1.0");
+    json.key("sector").begin_array().value(sector.i).value(sector.j).end_array();
+    append_settings(json, sector.bake);
+    json.key("probes").begin_array();
+    for (const Probe& probe : sector.probes) append_probe(json, sector, probe);
+    json.end_array();
+    append_grid(json, sector);
+    append_statistics(json, sector.statistics);
+    json.end_object();
+    std::puts(json.text().c_str());
+    return exit_valid;
+}
+
+}  // namespace drtv::tool

@@ -1,0 +1,80 @@
+#include "commands.h"
+#include "files.h"
+
+#include <drtv/read.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace drtv::tool {
+namespace {
+
+void print_sections(const std::vector<SectionEntry>& entries) {
+    std::printf("sections\n");
+    for (const SectionEntry& entry : entries) {
+        std::printf("  %-15s %6u bytes%s\n", std::string(name_of_section(entry.kind)).c_str(), entry.raw_bytes,
+                    entry.codec == 0 ? "" : (", zstd " + std::to_string(entry.stored_bytes)).c_str());
+    }
+}
+
+void print_probes(const Sector& sector) {
+    std::size_t of_kind[3] = {};
+    Float3 low{}, high{};
+    double visibility = 0;
+    for (const Probe& probe : sector.probes) {
+        ++of_kind[static_cast<std::size_t>(probe.kind)];
+        const Float3 p = position_m(sector, probe);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool first = &probe == &sector.probes.front();
+            low[axis] = first ? p[axis] : std::min(low[axis], p[axis]);
+            high[axis] = first ? p[axis] : std::max(high[axis], p[axis]);
+        }
+        for (std::size_t b = 0; b < 3; ++b) visibility += decode_fixed(probe.sky_visibility[b], sky_visibility_scale);
+    }
+    std::printf("probes          %zu (%zu ground, %zu vegetation, %zu manual)\n", sector.probes.size(), of_kind[0], of_kind[1], of_kind[2]);
+    if (sector.probes.empty()) return;
+    std::printf("heights         %.2f to %.2f m\n", static_cast<double>(low[2]), static_cast<double>(high[2]));
+    std::printf("sky visibility  %.3f on average\n", visibility / (3.0 * static_cast<double>(sector.probes.size())));
+}
+
+}  // namespace
+
+int run_info(Arguments arguments) {
+    if (arguments.size() != 1 || arguments[0].starts_with("-")) {
+        complain("info needs exactly one file");
+        return exit_usage;
+    }
+    std::string error;
+    const auto bytes = read_file(arguments[0], error);
+    if (!bytes) {
+        complain(error);
+        return exit_unreadable;
+    }
+    Sector sector;
+    if (const ReadStatus status = read_sector(*bytes, sector); !status.ok()) {
+        complain(arguments[0] + ": " + status.message);
+        return exit_invalid;
+    }
+    std::vector<SectionEntry> entries;
+    if (const ReadStatus status = read_section_table(*bytes, entries); !status.ok()) return exit_invalid;
+
+    const int x = sector.i * sector_size_m, y = sector.j * sector_size_m;
+    std::printf("sector          (%d, %d): x %d to %d m, y %d to %d m\n", sector.i, sector.j, x, x + sector_size_m, y, y + sector_size_m);
+    std::printf("file            %zu bytes, format 1.%u\n", bytes->size(), unsigned{(*bytes)[6]} | unsigned{(*bytes)[7]} << 8);
+    print_probes(sector);
+    const BakeRecord& bake = sector.bake;
+    std::printf("settings        rays %u, bounces %u, reach %g m, min_distance %g m\n", bake.rays, bake.bounces,
+                static_cast<double>(bake.reach_m), static_cast<double>(bake.min_distance_m));
+    std::printf("settings key    ");
+    for (std::uint8_t byte : bake.settings_key) std::printf("%02x", byte);
+    const Statistics& s = sector.statistics;
+    std::printf("\nplacement       %u candidates, %u moved out of solids, %u dropped in solids, %u removed by volumes, %u thinned\n",
+                s.candidates, s.moved_out, s.dropped_in_solid, s.removed_by_volume, s.thinned);
+    std::printf("spacing used    %g m\n", static_cast<double>(s.used_distance_m));
+    std::printf("rays            %llu, of which %llu met the back of a one-sided surface\n",
+                static_cast<unsigned long long>(s.rays), static_cast<unsigned long long>(s.back_hits));
+    print_sections(entries);
+    return exit_valid;
+}
+
+}  // namespace drtv::tool

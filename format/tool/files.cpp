@@ -1,0 +1,74 @@
+#include "files.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+namespace drtv::tool {
+
+namespace fs = std::filesystem;
+
+std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std::string& error) {
+    std::error_code code;
+    if (fs::is_directory(path, code)) {
+        error = path + " is a folder, not a file";
+        return std::nullopt;
+    }
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (file == nullptr) {
+        error = "cannot read " + path + ": " + std::strerror(errno);
+        return std::nullopt;
+    }
+    std::vector<std::uint8_t> bytes;
+    std::uint8_t buffer[65536];
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) bytes.insert(bytes.end(), buffer, buffer + n);
+    const bool failed = std::ferror(file) != 0;
+    std::fclose(file);
+    if (failed) {
+        error = "cannot read " + path + ": " + std::strerror(errno);
+        return std::nullopt;
+    }
+    return bytes;
+}
+
+bool write_file(const std::string& path, const std::vector<std::uint8_t>& bytes, std::string& error) {
+    const std::string temporary = path + ".tmp" + std::to_string(::getpid());
+    std::FILE* file = std::fopen(temporary.c_str(), "wb");
+    bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    if (file != nullptr && std::fclose(file) != 0) written = false;
+    if (written && std::rename(temporary.c_str(), path.c_str()) == 0) return true;
+    error = "cannot write " + path + ": " + std::strerror(errno);
+    if (file != nullptr) std::remove(temporary.c_str());
+    return false;
+}
+
+std::optional<std::vector<std::string>> sector_files(const std::string& path, std::string& error) {
+    std::error_code code;
+    const fs::file_status status = fs::status(path, code);
+    if (!fs::exists(status)) {
+        error = path + " does not exist";
+        return std::nullopt;
+    }
+    if (!fs::is_directory(status)) return std::vector<std::string>{path};
+    std::vector<std::string> files;
+    fs::recursive_directory_iterator entry(path, code);
+    for (; !code && entry != fs::recursive_directory_iterator(); entry.increment(code)) {
+        if (entry->path().extension() == ".drtv") files.push_back(entry->path().string());
+    }
+    if (code) {
+        error = "cannot read the folder " + path + ": " + code.message();
+        return std::nullopt;
+    }
+    if (files.empty()) {
+        error = "the folder " + path + " holds no .drtv file";
+        return std::nullopt;
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+}  // namespace drtv::tool

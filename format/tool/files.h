@@ -1,0 +1,20 @@
+// Files for the tool: reading one whole, finding the sector files of a folder.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace drtv::tool {
+
+// The file's bytes, or nothing with a sentence in `error`.
+[[nodiscard]] std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std::string& error);
+
+// Writes the file whole or not at all (temporary file, then rename). False with a sentence in `error`.
+[[nodiscard]] bool write_file(const std::string& path, const std::vector<std::uint8_t>& bytes, std::string& error);
+
+// `path` itself when it is a file; all `*.drtv` files below it, sorted, when it is a folder.
+[[nodiscard]] std::optional<std::vector<std::string>> sector_files(const std::string& path, std::string& error);
+
+}  // namespace drtv::tool

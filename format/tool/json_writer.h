@@ -1,0 +1,47 @@
+// A small JSON writer: appends to a string, keeps track of commas. Floats print with the shortest text that
+// reads back to the same float.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace drtv::tool {
+
+class JsonWriter {
+  public:
+    JsonWriter& begin_object();
+    JsonWriter& end_object();
+    JsonWriter& begin_array();
+    JsonWriter& end_array();
+    JsonWriter& key(std::string_view name);
+    JsonWriter& value(std::string_view text);
+    JsonWriter& value(const char* text) { return value(std::string_view(text)); }
+    JsonWriter& value(bool truth);
+    JsonWriter& value(float number);
+    JsonWriter& value(double number);
+    JsonWriter& value(std::int64_t number);
+    JsonWriter& value(std::uint64_t number);
+    JsonWriter& value(int number) { return value(std::int64_t{number}); }
+    JsonWriter& value(unsigned number) { return value(std::uint64_t{number}); }
+
+    template <class Range>
+    JsonWriter& array(const Range& range) {
+        begin_array();
+        for (const auto& element : range) value(element);
+        return end_array();
+    }
+
+    [[nodiscard]] const std::string& text() const { return out_; }
+
+  private:
+    void separate();
+    void append_quoted(std::string_view text);
+
+    std::string out_;
+    std::vector<bool> has_element_;  // for each open object or array
+    bool after_key_ = false;
+};
+
+}  // namespace drtv::tool

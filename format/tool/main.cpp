@@ -1,0 +1,53 @@
+// drtv: validates, shows and pictures sector files.
+#include "commands.h"
+
+#include <cstdio>
+#include <vector>
+
+namespace drtv::tool {
+
+void complain(const std::string& sentence) { std::fprintf(stderr, "drtv: %s\n", sentence.c_str()); }
+
+namespace {
+
+constexpr const char* usage =
+    "usage: drtv COMMAND ...\n"
+    "\n"
+    "  validate PATH... [--json]       check sector files, or all of a folder\n"
+    "  info FILE                       what a sector file holds\n"
+    "  dump FILE --json                every number of a sector file as JSON\n"
+    "  preview DIR --out FILE.png      picture of a region from above\n"
+    "          [--metres-per-pixel M] [--quantity relit|sky]\n"
+    "  --version                       version of tool and format\n"
+    "\n"
+    "exit status: 0 valid, 1 wrong usage, 2 a file cannot be read, 3 a file is invalid\n";
+
+int run(const std::vector<std::string>& arguments) {
+    if (arguments.empty()) {
+        std::fputs(usage, stderr);
+        return exit_usage;
+    }
+    const std::string& command = arguments.front();
+    const Arguments rest = Arguments(arguments).subspan(1);
+    if (command == "validate") return run_validate(rest);
+    if (command == "info") return run_info(rest);
+    if (command == "dump") return run_dump(rest);
+    if (command == "preview") return run_preview(rest);
+    if (command == "--help" || command == "-h" || command == "help") {
+        std::fputs(usage, stdout);
+        return exit_valid;
+    }
+    if (command == "--version") {
+        std::puts("drtv 0.1.0, sector format 1.0");
+        return exit_valid;
+    }
+    complain("unknown command \"" + command + "\"; drtv --help lists them");
+    return exit_usage;
+}
+
+}  // namespace
+}  // namespace drtv::tool
+
+int main(int argc, char** argv) {
+    return drtv::tool::run(std::vector<std::string>(argv + 1, argv + argc));
+}
