@@ -33,6 +33,15 @@ inline constexpr std::size_t grid_header_bytes = 16;
 inline constexpr std::size_t grid_bytes = grid_header_bytes + 4096;
 inline constexpr std::size_t statistics_bytes = 40;
 
+// Where the values of a section lie in the file. Inside a compressed section no byte stands for one value: the
+// section's first byte has to do.
+struct Place {
+    std::uint64_t start = 0;
+    bool raw = true;
+
+    [[nodiscard]] constexpr std::uint64_t at(std::uint64_t n) const { return raw ? start + n : start; }
+};
+
 [[nodiscard]] constexpr std::size_t align(std::size_t offset) { return (offset + alignment - 1) / alignment * alignment; }
 
 }  // namespace drtv::layout

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 namespace drtv {
@@ -45,14 +46,14 @@ ReadStatus check_header(Bytes file, std::size_t& section_count) {
     if (file.size() < 4 || load_le<std::uint32_t>(file, h::magic) != layout::magic) {
         return fail(ReadError::not_a_sector_file, 0, "not a drtv sector file: it does not start with \"DRTV\"");
     }
+    // Magic and version come first and stay so in every version, whatever the length of its header.
+    if (file.size() >= h::file_bytes && load_le<std::uint16_t>(file, h::major) != layout::major_version) {
+        return fail(ReadError::unsupported_version, h::major,
+                    "format version " + text(load_le<std::uint16_t>(file, h::major)) + "." +
+                        text(load_le<std::uint16_t>(file, h::minor)) + " is not supported: this reader knows version 1");
+    }
     if (file.size() < layout::header_bytes) {
         return fail(ReadError::truncated, file.size(), "the header needs 64 bytes, the file has " + text(file.size()));
-    }
-    const auto major = load_le<std::uint16_t>(file, h::major);
-    if (major != layout::major_version) {
-        return fail(ReadError::unsupported_version, h::major,
-                    "format version " + text(major) + "." + text(load_le<std::uint16_t>(file, h::minor)) +
-                        " is not supported: this reader knows version 1");
     }
     const auto file_bytes = load_le<std::uint32_t>(file, h::file_bytes);
     if (file.size() < file_bytes) {
@@ -77,7 +78,7 @@ ReadStatus check_header(Bytes file, std::size_t& section_count) {
     }
     const auto i = load_i32(file, h::sector_i), j = load_i32(file, h::sector_j);
     if (std::abs(std::int64_t{i}) > max_sector_coordinate || std::abs(std::int64_t{j}) > max_sector_coordinate) {
-        return fail(ReadError::bad_header, h::sector_i,
+        return fail(ReadError::bad_header, std::abs(std::int64_t{i}) > max_sector_coordinate ? h::sector_i : h::sector_j,
                     "sector (" + std::to_string(i) + ", " + std::to_string(j) + ") is beyond the limit of 16384");
     }
     const auto probe_count = load_le<std::uint16_t>(file, h::probe_count);
@@ -127,12 +128,19 @@ ReadStatus check_entry(Bytes file, std::size_t at, const SectionEntry& entry, st
     return {};
 }
 
+// One Zstandard frame, whole and alone: no skippable frame, none of a format before 0.8, nothing behind it.
+bool is_one_frame(Bytes stored) {
+    return stored.size() >= 4 && load_le<std::uint32_t>(stored, 0) == ZSTD_MAGICNUMBER &&
+           ZSTD_findFrameCompressedSize(stored.data(), stored.size()) == stored.size();
+}
+
 // The decoded bytes of one section, with the size its kind demands.
 ReadStatus decode_section(Bytes file, const std::vector<SectionEntry>& entries, SectionKind kind, std::size_t raw_bytes,
-                          std::vector<std::uint8_t>& out, std::uint64_t& offset) {
+                          std::vector<std::uint8_t>& out, layout::Place& place) {
     for (const SectionEntry& entry : entries) {
         if (entry.kind != static_cast<std::uint16_t>(kind)) continue;
-        offset = entry.offset;
+        place = {entry.offset, entry.codec == static_cast<std::uint8_t>(Codec::raw)};
+        const std::uint64_t offset = entry.offset;
         const std::string name = section_name(entry);
         if (entry.version != 1) {
             return fail(ReadError::unsupported_version, offset, name + " has version " + text(entry.version) + ", this reader knows 1");
@@ -141,7 +149,6 @@ ReadStatus decode_section(Bytes file, const std::vector<SectionEntry>& entries, 
             return fail(ReadError::bad_section, offset, name + " has " + text(entry.raw_bytes) + " bytes, must have " + text(raw_bytes));
         }
         const Bytes stored = file.subspan(entry.offset, entry.stored_bytes);
-        out.assign(raw_bytes, 0);
         if (entry.codec == static_cast<std::uint8_t>(Codec::raw)) {
             out.assign(stored.begin(), stored.end());
             return {};
@@ -149,6 +156,10 @@ ReadStatus decode_section(Bytes file, const std::vector<SectionEntry>& entries, 
         if (entry.codec != static_cast<std::uint8_t>(Codec::zstd)) {
             return fail(ReadError::bad_section, offset, name + " has the unknown codec " + text(entry.codec));
         }
+        if (!is_one_frame(stored)) {
+            return fail(ReadError::bad_section, offset, name + ": its " + text(stored.size()) + " bytes are not one whole zstd frame");
+        }
+        out.assign(raw_bytes, 0);
         const std::size_t size = ZSTD_decompress(out.data(), out.size(), stored.data(), stored.size());
         if (ZSTD_isError(size) || size != raw_bytes) {
             return fail(ReadError::bad_section, offset, name + ": its zstd frame does not decode to " + text(raw_bytes) + " bytes");
@@ -159,27 +170,28 @@ ReadStatus decode_section(Bytes file, const std::vector<SectionEntry>& entries, 
                 "the " + std::string(name_of_section(static_cast<std::uint16_t>(kind))) + " section is missing");
 }
 
-ReadStatus read_bake(Bytes raw, std::uint64_t offset, BakeRecord& bake) {
+ReadStatus read_bake(Bytes raw, const layout::Place& place, BakeRecord& bake) {
     bake.rays = load_le<std::uint32_t>(raw, 0);
     bake.bounces = load_le<std::uint32_t>(raw, 4);
     bake.reach_m = load_f32(raw, 8);
     bake.min_distance_m = load_f32(raw, 12);
     std::memcpy(bake.settings_key.data(), raw.data() + 16, bake.settings_key.size());
-    if (!std::isfinite(bake.reach_m) || !std::isfinite(bake.min_distance_m)) {
-        return fail(ReadError::bad_section, offset + 8, "bake section: reach or minimal distance is not finite");
+    if (!std::isfinite(bake.reach_m)) return fail(ReadError::bad_section, place.at(8), "bake section: the reach is not finite");
+    if (!std::isfinite(bake.min_distance_m)) {
+        return fail(ReadError::bad_section, place.at(12), "bake section: the minimal distance is not finite");
     }
     return {};
 }
 
-ReadStatus read_positions(Bytes raw, std::uint64_t offset, std::vector<Probe>& probes) {
+ReadStatus read_positions(Bytes raw, const layout::Place& place, std::vector<Probe>& probes) {
     for (std::size_t p = 0; p < probes.size(); ++p) {
         const std::size_t at = p * layout::position_bytes;
         for (std::size_t axis = 0; axis < 3; ++axis) probes[p].position[axis] = load_le<std::uint16_t>(raw, at + 2 * axis);
         if (raw[at + 6] > static_cast<std::uint8_t>(ProbeKind::manual)) {
-            return fail(ReadError::bad_section, offset + at + 6, "probe " + text(p) + ": kind " + text(raw[at + 6]) + " is unknown");
+            return fail(ReadError::bad_section, place.at(at + 6), "probe " + text(p) + ": kind " + text(raw[at + 6]) + " is unknown");
         }
         if (raw[at + 7] != 0) {
-            return fail(ReadError::bad_section, offset + at + 7, "probe " + text(p) + ": its reserved byte is not zero");
+            return fail(ReadError::bad_section, place.at(at + 7), "probe " + text(p) + ": its reserved byte is not zero");
         }
         probes[p].kind = static_cast<ProbeKind>(raw[at + 6]);
     }
@@ -210,16 +222,21 @@ void read_transfer(Bytes raw, std::vector<Probe>& probes) {
     }
 }
 
-ReadStatus read_grid(Bytes raw, std::uint64_t offset, Grid& grid) {
+ReadStatus read_grid(Bytes raw, const layout::Place& place, Grid& grid) {
     grid.z_origin_units = load_i32(raw, 0);
     grid.cell_height_units = load_le<std::uint32_t>(raw, 4);
-    if (grid.cell_height_units == 0) return fail(ReadError::bad_section, offset + 4, "grid section: the cell height is zero");
-    if (load_le<std::uint64_t>(raw, 8) != 0) return fail(ReadError::bad_section, offset + 8, "grid section: reserved bytes are not zero");
+    if (std::abs(std::int64_t{grid.z_origin_units}) > max_z_origin_units) {
+        return fail(ReadError::bad_section, place.at(0), "grid section: z origin " + std::to_string(grid.z_origin_units) + " is over the limit of 2^30");
+    }
+    if (grid.cell_height_units == 0 || grid.cell_height_units > max_cell_height_units) {
+        return fail(ReadError::bad_section, place.at(4), "grid section: the cell height " + text(grid.cell_height_units) + " is not between 1 and 2^24");
+    }
+    if (load_le<std::uint64_t>(raw, 8) != 0) return fail(ReadError::bad_section, place.at(8), "grid section: reserved bytes are not zero");
     std::memcpy(grid.cells.data(), raw.data() + layout::grid_header_bytes, grid.cells.size());
     return {};
 }
 
-void read_statistics(Bytes raw, Statistics& s) {
+ReadStatus read_statistics(Bytes raw, const layout::Place& place, Statistics& s) {
     s.candidates = load_le<std::uint32_t>(raw, 0);
     s.moved_out = load_le<std::uint32_t>(raw, 4);
     s.dropped_in_solid = load_le<std::uint32_t>(raw, 8);
@@ -228,6 +245,8 @@ void read_statistics(Bytes raw, Statistics& s) {
     s.used_distance_m = load_f32(raw, 20);
     s.rays = load_le<std::uint64_t>(raw, 24);
     s.back_hits = load_le<std::uint64_t>(raw, 32);
+    if (!std::isfinite(s.used_distance_m)) return fail(ReadError::bad_section, place.at(20), "statistics section: the used distance is not finite");
+    return {};
 }
 
 }  // namespace
@@ -280,21 +299,21 @@ ReadStatus read_sector(std::span<const std::uint8_t> bytes, Sector& sector) {
     const std::size_t count = s.probes.size();
 
     std::vector<std::uint8_t> raw;
-    std::uint64_t offset = 0;
-    const auto decode = [&](SectionKind kind, std::size_t size) { return decode_section(bytes, entries, kind, size, raw, offset); };
+    layout::Place place;
+    const auto decode = [&](SectionKind kind, std::size_t size) { return decode_section(bytes, entries, kind, size, raw, place); };
 
     if (ReadStatus status = decode(SectionKind::bake, layout::bake_bytes); !status.ok()) return status;
-    if (ReadStatus status = read_bake(raw, offset, s.bake); !status.ok()) return status;
+    if (ReadStatus status = read_bake(raw, place, s.bake); !status.ok()) return status;
     if (ReadStatus status = decode(SectionKind::positions, count * layout::position_bytes); !status.ok()) return status;
-    if (ReadStatus status = read_positions(raw, offset, s.probes); !status.ok()) return status;
+    if (ReadStatus status = read_positions(raw, place, s.probes); !status.ok()) return status;
     if (ReadStatus status = decode(SectionKind::sky_visibility, count * layout::sky_visibility_bytes); !status.ok()) return status;
     read_sky_visibility(raw, s.probes);
     if (ReadStatus status = decode(SectionKind::transfer, count * layout::transfer_bytes); !status.ok()) return status;
     read_transfer(raw, s.probes);
     if (ReadStatus status = decode(SectionKind::grid, layout::grid_bytes); !status.ok()) return status;
-    if (ReadStatus status = read_grid(raw, offset, s.grid); !status.ok()) return status;
+    if (ReadStatus status = read_grid(raw, place, s.grid); !status.ok()) return status;
     if (ReadStatus status = decode(SectionKind::statistics, layout::statistics_bytes); !status.ok()) return status;
-    read_statistics(raw, s.statistics);
+    if (ReadStatus status = read_statistics(raw, place, s.statistics); !status.ok()) return status;
     sector = std::move(s);
     return {};
 }

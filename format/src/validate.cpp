@@ -6,6 +6,7 @@
 #include "layout.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace drtv {
@@ -14,6 +15,7 @@ namespace {
 enum IssueIndex : std::size_t {
     unreadable,
     checksum,
+    unsupported_version,
     reserved_code,
     sky_visibility_range,
     sky_visibility_down,
@@ -24,9 +26,10 @@ enum IssueIndex : std::size_t {
     duplicate_position,
 };
 
-constexpr std::array<Issue, 10> issues = {{
+constexpr std::array<Issue, 11> issues = {{
     {"STRUCTURE", Severity::error, "header, table or a section breaks a structural rule"},
     {"CHECKSUM", Severity::error, "a stored checksum does not match the bytes it covers"},
+    {"UNSUPPORTED_VERSION", Severity::error, "the file, or a section that this version knows, is of another version"},
     {"FIXED_POINT_RESERVED", Severity::error, "a coefficient has the reserved code -32768"},
     {"SKY_VISIBILITY_RANGE", Severity::error, "a sky visibility lies outside [0, 1]"},
     {"SKY_VISIBILITY_DOWN", Severity::error, "the sky visibility of the downward direction is not 0"},
@@ -51,22 +54,26 @@ class Findings {
     std::vector<Finding> found_;
 };
 
-std::uint64_t section_offset(const std::vector<SectionEntry>& entries, SectionKind kind) {
+layout::Place place_of(const std::vector<SectionEntry>& entries, SectionKind kind) {
     for (const SectionEntry& entry : entries) {
-        // Inside a compressed section no byte stands for one value: its start has to do.
-        if (entry.kind == static_cast<std::uint16_t>(kind)) return entry.offset;
+        if (entry.kind == static_cast<std::uint16_t>(kind)) return {entry.offset, entry.codec == static_cast<std::uint8_t>(Codec::raw)};
     }
-    return 0;
+    return {};
+}
+
+std::size_t issue_of(ReadError error) {
+    if (error == ReadError::checksum_mismatch) return checksum;
+    return error == ReadError::unsupported_version ? unsupported_version : unreadable;
 }
 
 std::string probe_path(std::size_t p) { return "probe[" + std::to_string(p) + "]"; }
 std::string index(std::size_t n) { return "[" + std::to_string(n) + "]"; }
 
-void check_sky_visibility(const Sector& sector, std::uint64_t start, Findings& findings) {
+void check_sky_visibility(const Sector& sector, const layout::Place& place, Findings& findings) {
     for (std::size_t p = 0; p < sector.probes.size(); ++p) {
         for (std::size_t b = 0; b < basis_count; ++b) {
             const std::int16_t q = sector.probes[p].sky_visibility[b];
-            const std::uint64_t offset = start + p * layout::sky_visibility_bytes + 2 * b;
+            const std::uint64_t offset = place.at(p * layout::sky_visibility_bytes + 2 * b);
             const std::string path = probe_path(p) + ".sky_visibility" + index(b);
             const std::string value = "code " + std::to_string(q);
             if (q == INT16_MIN) findings.add(reserved_code, offset, path, value + " is reserved");
@@ -76,13 +83,14 @@ void check_sky_visibility(const Sector& sector, std::uint64_t start, Findings& f
     }
 }
 
-void check_transfer(const Sector& sector, std::uint64_t start, Findings& findings) {
+void check_transfer(const Sector& sector, const layout::Place& place, Findings& findings) {
     static constexpr std::array<char, channel_count> channel_name = {'r', 'g', 'b'};
     for (std::size_t p = 0; p < sector.probes.size(); ++p) {
-        std::uint64_t offset = start + p * layout::transfer_bytes;
+        std::uint64_t at = p * layout::transfer_bytes;
         for (std::size_t c = 0; c < channel_count; ++c) {
             for (std::size_t b = 0; b < basis_count; ++b) {
-                for (std::size_t i = 0; i < sh_count; ++i, offset += 2) {
+                for (std::size_t i = 0; i < sh_count; ++i, at += 2) {
+                    const std::uint64_t offset = place.at(at);
                     const std::int16_t q = sector.probes[p].transfer[c][b][i];
                     const float value = decode_fixed(q, transfer_scale);
                     const float bound = i == 0 ? transfer_bound_y0 : transfer_bound_y1;
@@ -96,10 +104,10 @@ void check_transfer(const Sector& sector, std::uint64_t start, Findings& finding
     }
 }
 
-void check_grid(const Sector& sector, std::uint64_t start, Findings& findings) {
+void check_grid(const Sector& sector, const layout::Place& place, Findings& findings) {
     for (std::size_t cell = 0; cell < grid_cell_count; ++cell) {
         const std::uint8_t probe = sector.grid.cells[cell];
-        const std::uint64_t offset = start + layout::grid_header_bytes + cell;
+        const std::uint64_t offset = place.at(layout::grid_header_bytes + cell);
         const std::string path = "grid.cells" + index(cell);
         if (probe == no_probe && !sector.probes.empty()) {
             findings.add(grid_no_probe, offset, path, "names no probe, the sector has " + std::to_string(sector.probes.size()));
@@ -110,21 +118,22 @@ void check_grid(const Sector& sector, std::uint64_t start, Findings& findings) {
     }
 }
 
-void check_positions(const Sector& sector, std::uint64_t start, Findings& findings) {
+void check_positions(const Sector& sector, const layout::Place& place, Findings& findings) {
     for (std::size_t p = 1; p < sector.probes.size(); ++p) {
         for (std::size_t q = 0; q < p; ++q) {
             if (sector.probes[p].position != sector.probes[q].position) continue;
-            findings.add(duplicate_position, start + p * layout::position_bytes, probe_path(p) + ".position",
+            findings.add(duplicate_position, place.at(p * layout::position_bytes), probe_path(p) + ".position",
                          "is that of probe " + std::to_string(q));
+            break;
         }
     }
 }
 
-void check_bake(const BakeRecord& bake, std::uint64_t start, Findings& findings) {
-    if (bake.rays == 0) findings.add(settings_range, start, "settings.rays", "is 0");
-    if (!(bake.reach_m > 0)) findings.add(settings_range, start + 8, "settings.reach", std::to_string(bake.reach_m) + " m is not positive");
+void check_bake(const BakeRecord& bake, const layout::Place& place, Findings& findings) {
+    if (bake.rays == 0) findings.add(settings_range, place.at(0), "settings.rays", "is 0");
+    if (!(bake.reach_m > 0)) findings.add(settings_range, place.at(8), "settings.reach", std::to_string(bake.reach_m) + " m is not positive");
     if (!(bake.min_distance_m > 0)) {
-        findings.add(settings_range, start + 12, "settings.min_distance", std::to_string(bake.min_distance_m) + " m is not positive");
+        findings.add(settings_range, place.at(12), "settings.min_distance", std::to_string(bake.min_distance_m) + " m is not positive");
     }
 }
 
@@ -133,19 +142,20 @@ void check_bake(const BakeRecord& bake, std::uint64_t start, Findings& findings)
 std::span<const Issue> all_issues() { return issues; }
 
 std::vector<Finding> validate_sector(std::span<const std::uint8_t> bytes, std::size_t max_findings) {
+    assert(max_findings > 0);
     Findings findings(max_findings);
     Sector sector;
     if (const ReadStatus status = read_sector(bytes, sector); !status.ok()) {
-        findings.add(status.error == ReadError::checksum_mismatch ? checksum : unreadable, status.offset, "", status.message);
+        findings.add(issue_of(status.error), status.offset, "", status.message);
         return findings.take();
     }
     std::vector<SectionEntry> entries;
     if (!read_section_table(bytes, entries).ok()) return findings.take();
-    check_bake(sector.bake, section_offset(entries, SectionKind::bake), findings);
-    check_positions(sector, section_offset(entries, SectionKind::positions), findings);
-    check_sky_visibility(sector, section_offset(entries, SectionKind::sky_visibility), findings);
-    check_transfer(sector, section_offset(entries, SectionKind::transfer), findings);
-    check_grid(sector, section_offset(entries, SectionKind::grid), findings);
+    check_bake(sector.bake, place_of(entries, SectionKind::bake), findings);
+    check_positions(sector, place_of(entries, SectionKind::positions), findings);
+    check_sky_visibility(sector, place_of(entries, SectionKind::sky_visibility), findings);
+    check_transfer(sector, place_of(entries, SectionKind::transfer), findings);
+    check_grid(sector, place_of(entries, SectionKind::grid), findings);
     return findings.take();
 }
 

@@ -7,6 +7,7 @@
 #include <zstd.h>
 
 #include <cassert>
+#include <cstdlib>
 
 namespace drtv {
 namespace {
@@ -116,6 +117,8 @@ void append_entry(Bytes& bytes, const SectionEntry& entry) {
 
 std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions& options) {
     assert(sector.probes.size() <= max_probes && sector.z_shift <= max_z_shift);
+    assert(std::abs(std::int64_t{sector.i}) <= max_sector_coordinate && std::abs(std::int64_t{sector.j}) <= max_sector_coordinate);
+    assert(std::abs(std::int64_t{sector.z_origin_units}) <= max_z_origin_units);
     std::vector<StoredSection> sections;
     sections.push_back(store_section(SectionKind::bake, bake_section(sector.bake), options.codec));
     sections.push_back(store_section(SectionKind::positions, positions_section(sector.probes), options.codec));

@@ -4,10 +4,14 @@
 
 #include <drtv/read.h>
 
+#include <array>
 #include <cstdio>
 
 namespace drtv::tool {
 namespace {
+
+// Heights and positions are whole numbers of 2^-10 m, which a double holds exactly wherever a sector can lie.
+double metres(std::int64_t units) { return static_cast<double>(units) / position_units_per_m; }
 
 std::string hex(const std::array<std::uint8_t, 32>& bytes) {
     static constexpr char digits[] = "0123456789abcdef";
@@ -21,7 +25,9 @@ std::string hex(const std::array<std::uint8_t, 32>& bytes) {
 
 void append_probe(JsonWriter& json, const Sector& sector, const Probe& probe) {
     json.begin_object();
-    json.key("position").array(position_m(sector, probe));
+    json.key("position").begin_array();
+    for (std::int32_t units : position_units(sector, probe)) json.value(metres(units));
+    json.end_array();
     json.key("kind").value(name_of(probe.kind));
     json.key("transfer").begin_array();
     for (const auto& channel : probe.transfer) {
@@ -48,10 +54,9 @@ void append_settings(JsonWriter& json, const BakeRecord& bake) {
 }
 
 void append_grid(JsonWriter& json, const Sector& sector) {
-    const Float3 origin = {static_cast<float>(sector.i * sector_size_m), static_cast<float>(sector.j * sector_size_m),
-                           static_cast<float>(sector.grid.z_origin_units) * position_unit_m};
-    constexpr float cell_width_m = static_cast<float>(sector_size_m) / grid_size;
-    const Float3 cell = {cell_width_m, cell_width_m, static_cast<float>(sector.grid.cell_height_units) * position_unit_m};
+    const std::array<double, 3> origin = {double{sector_size_m} * sector.i, double{sector_size_m} * sector.j, metres(sector.grid.z_origin_units)};
+    constexpr double cell_width_m = double{sector_size_m} / grid_size;
+    const std::array<double, 3> cell = {cell_width_m, cell_width_m, metres(sector.grid.cell_height_units)};
     json.key("grid").begin_object().key("origin").array(origin).key("cell").array(cell);
     json.key("size").begin_array().value(16).value(16).value(16).end_array();
     json.key("cells").begin_array();
@@ -93,7 +98,7 @@ int run_dump(Arguments arguments) {
         return exit_invalid;
     }
     JsonWriter json;
-    json.begin_object().key("format_version").value("1.0");
+    json.begin_object().key("format_version").value(format_version(*bytes));
     json.key("sector").begin_array().value(sector.i).value(sector.j).end_array();
     append_settings(json, sector.bake);
     json.key("probes").begin_array();

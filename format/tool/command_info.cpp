@@ -60,7 +60,7 @@ int run_info(Arguments arguments) {
 
     const int x = sector.i * sector_size_m, y = sector.j * sector_size_m;
     std::printf("sector          (%d, %d): x %d to %d m, y %d to %d m\n", sector.i, sector.j, x, x + sector_size_m, y, y + sector_size_m);
-    std::printf("file            %zu bytes, format 1.%u\n", bytes->size(), unsigned{(*bytes)[6]} | unsigned{(*bytes)[7]} << 8);
+    std::printf("file            %zu bytes, format %s\n", bytes->size(), format_version(*bytes).c_str());
     print_probes(sector);
     const BakeRecord& bake = sector.bake;
     std::printf("settings        rays %u, bounces %u, reach %g m, min_distance %g m\n", bake.rays, bake.bounces,

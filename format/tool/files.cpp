@@ -46,6 +46,11 @@ bool write_file(const std::string& path, const std::vector<std::uint8_t>& bytes,
     return false;
 }
 
+std::string format_version(std::span<const std::uint8_t> bytes) {
+    const auto number = [&](std::size_t at) { return std::to_string(unsigned{bytes[at]} | unsigned{bytes[at + 1]} << 8); };
+    return number(4) + "." + number(6);
+}
+
 std::optional<std::vector<std::string>> sector_files(const std::string& path, std::string& error) {
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
@@ -57,7 +62,8 @@ std::optional<std::vector<std::string>> sector_files(const std::string& path, st
     std::vector<std::string> files;
     fs::recursive_directory_iterator entry(path, code);
     for (; !code && entry != fs::recursive_directory_iterator(); entry.increment(code)) {
-        if (entry->path().extension() == ".drtv") files.push_back(entry->path().string());
+        std::error_code ignored;
+        if (entry->path().extension() == ".drtv" && !entry->is_directory(ignored)) files.push_back(entry->path().string());
     }
     if (code) {
         error = "cannot read the folder " + path + ": " + code.message();

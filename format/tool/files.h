@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace drtv::tool {
 
 // Writes the file whole or not at all (temporary file, then rename). False with a sentence in `error`.
 [[nodiscard]] bool write_file(const std::string& path, const std::vector<std::uint8_t>& bytes, std::string& error);
+
+// "1.0" from the header of a sector file. REQUIRES: the file was read without error.
+[[nodiscard]] std::string format_version(std::span<const std::uint8_t> bytes);
 
 // `path` itself when it is a file; all `*.drtv` files below it, sorted, when it is a folder.
 [[nodiscard]] std::optional<std::vector<std::string>> sector_files(const std::string& path, std::string& error);

@@ -1,5 +1,5 @@
 // A small JSON writer: appends to a string, keeps track of commas. Floats print with the shortest text that
-// reads back to the same float.
+// reads back to the same float; text that is not UTF-8 (a file's name may be anything) has U+FFFD for each wrong byte.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ constexpr const char* usage =
     "          [--metres-per-pixel M] [--quantity relit|sky]\n"
     "  --version                       version of tool and format\n"
     "\n"
-    "exit status: 0 valid, 1 wrong usage, 2 a file cannot be read, 3 a file is invalid\n";
+    "exit status: 0 valid, 1 wrong usage, 2 a file cannot be read or written, 3 a file is invalid\n";
 
 int run(const std::vector<std::string>& arguments) {
     if (arguments.empty()) {
@@ -49,5 +49,9 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace drtv::tool
 
 int main(int argc, char** argv) {
-    return drtv::tool::run(std::vector<std::string>(argv + 1, argv + argc));
+    const int exit_code = drtv::tool::run(std::vector<std::string>(argv + 1, argv + argc));
+    // A full disk behind a redirected stdout must not look like success.
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+    drtv::tool::complain("cannot write to standard output");
+    return drtv::tool::exit_unreadable;
 }

@@ -56,13 +56,15 @@ inline constexpr float transfer_bound_y1 = 0.4887f;
     return static_cast<float>(q) / fixed_point_max * scale;
 }
 
-// Nearest code to `value`, ties away from zero, saturated to +-32767. NaN gives 0.
+// Nearest code to `value`, ties away from zero, saturated to +-32767. NaN gives 0. REQUIRES: `scale` is a power of
+// two, so that the quotient and all else up to the rounding are exact in double.
 [[nodiscard]] constexpr std::int16_t encode_fixed(float value, float scale) {
-    const float q = value / scale * fixed_point_max;
+    constexpr double max = fixed_point_max;
+    const double q = static_cast<double>(value) / static_cast<double>(scale) * max;
     if (!(q == q)) return 0;
-    if (q >= fixed_point_max) return 32767;
-    if (q <= -fixed_point_max) return -32767;
-    return static_cast<std::int16_t>(q + (q < 0 ? -0.5f : 0.5f));
+    if (q >= max) return 32767;
+    if (q <= -max) return -32767;
+    return static_cast<std::int16_t>(q + (q < 0 ? -0.5 : 0.5));
 }
 
 }  // namespace drtv

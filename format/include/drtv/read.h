@@ -15,7 +15,7 @@ namespace drtv {
 enum class ReadError : std::uint8_t {
     none,
     not_a_sector_file,    // too short, or another magic
-    unsupported_version,  // a newer major version
+    unsupported_version,  // another major version, or a known section of another version
     truncated,            // the file is shorter than it says
     trailing_bytes,       // the file is longer than it says
     bad_header,           // a header field breaks its rule
@@ -27,7 +27,7 @@ enum class ReadError : std::uint8_t {
 
 struct [[nodiscard]] ReadStatus {
     ReadError error = ReadError::none;
-    std::uint64_t offset = 0;  // byte in the file at which the rule is broken
+    std::uint64_t offset = 0;  // byte in the file at which the rule is broken; a compressed section's first byte
     std::string message;       // what, where, value; empty when there is no error
 
     [[nodiscard]] bool ok() const { return error == ReadError::none; }

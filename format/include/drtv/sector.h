@@ -30,9 +30,10 @@ struct Probe {
 };
 
 // Nearest probe a cell. Cell (x, y, z) stands at index x + 16 y + 256 z; cells are 4 m wide.
+// The reader takes any index: one that is not below the number of probes counts as `no_probe` (SPEC.md, section 5.5).
 struct Grid {
     std::int32_t z_origin_units = 0;      // bottom of the lowest cells, 2^-10 m
-    std::uint32_t cell_height_units = 1;  // 2^-10 m, at least 1
+    std::uint32_t cell_height_units = 1;  // 2^-10 m, 1 to 2^24
     std::array<std::uint8_t, grid_cell_count> cells{};
 
     bool operator==(const Grid&) const = default;
@@ -77,7 +78,8 @@ struct Sector {
 // A sector coordinate is refused beyond this, so that no position leaves the exact range of 32-bit units.
 inline constexpr std::int32_t max_sector_coordinate = 1 << 14;
 inline constexpr std::uint8_t max_z_shift = 10;
-inline constexpr std::int32_t max_z_origin_units = 1 << 30;
+inline constexpr std::int32_t max_z_origin_units = 1 << 30;         // of the sector and of the grid
+inline constexpr std::uint32_t max_cell_height_units = 1u << 24;   // so that 16 cells fit 32 bits too
 
 // World position of a probe in units of 2^-10 m, exact.
 [[nodiscard]] std::array<std::int32_t, 3> position_units(const Sector& sector, const Probe& probe);

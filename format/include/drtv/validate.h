@@ -21,7 +21,7 @@ struct Issue {
 
 struct Finding {
     const Issue* issue = nullptr;
-    std::uint64_t offset = 0;  // byte in the file
+    std::uint64_t offset = 0;  // byte in the file; inside a compressed section, that section's first byte
     std::string path;          // "probe[12].transfer.g[3][1]"
     std::string message;       // what, where, value
 };
@@ -29,7 +29,7 @@ struct Finding {
 // The table of all issues, for documentation and tests.
 [[nodiscard]] std::span<const Issue> all_issues();
 
-// Findings in the order of the file, at most `max_findings`. Empty: valid.
+// Findings by section in the order of their kinds, at most `max_findings`. Empty: valid. REQUIRES: max_findings > 0.
 [[nodiscard]] std::vector<Finding> validate_sector(std::span<const std::uint8_t> bytes, std::size_t max_findings = 100);
 
 }  // namespace drtv

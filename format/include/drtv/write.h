@@ -13,7 +13,9 @@ struct WriteOptions {
     Codec codec = Codec::raw;  // zstd is used for a section only where it makes it smaller
 };
 
-// The bytes of the file. REQUIRES: at most 255 probes, |i| and |j| <= max_sector_coordinate, z_shift <= max_z_shift.
+// The bytes of the file. Values are written as they are: what is not a valid sector gives a file that is not valid.
+// REQUIRES: at most 255 probes, |i| and |j| <= max_sector_coordinate, |z_origin_units| <= max_z_origin_units,
+// z_shift <= max_z_shift.
 [[nodiscard]] std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions& options = {});
 
 }  // namespace drtv

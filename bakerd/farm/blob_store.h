@@ -1,0 +1,67 @@
+// Blobs by SHA-256 in a folder: inputs and results. A blob appears whole or not at all (temporary file, fsync,
+// rename, fsync of the folder); losing one costs work, never correctness. Thread-safe, and safe between processes.
+#pragma once
+
+#include "bakerd/farm/error.h"
+#include "bakerd/map/digest.h"
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace drtv::farm {
+
+using map::Digest;
+
+class BlobStore {
+  public:
+    // `folder` must exist; its parts are made when needed.
+    [[nodiscard]] static Result<std::unique_ptr<BlobStore>> open(const std::string& folder);
+
+    [[nodiscard]] Result<Digest> put(std::span<const std::uint8_t> bytes);
+
+    // Checks the digest of what it reads: a damaged blob is removed and reported as data_loss, never returned.
+    [[nodiscard]] Result<std::vector<std::uint8_t>> get(const Digest& digest);
+
+    [[nodiscard]] bool has(const Digest& digest) const;
+
+    // Bytes of an unfinished upload, 0 if there is none.
+    [[nodiscard]] std::int64_t received_bytes(const Digest& digest) const;
+
+    // One client's upload of one blob: a lock on it while it lives. What was appended survives, so that a later
+    // upload can go on.
+    class Upload {
+      public:
+        Upload(Upload&& other) noexcept;
+        ~Upload();
+        [[nodiscard]] Result<void> append(std::span<const std::uint8_t> bytes);
+        // The blob stands in the store; or the upload is thrown away and invalid_argument says what was wrong.
+        [[nodiscard]] Result<void> finish();
+
+      private:
+        friend class BlobStore;
+        Upload(BlobStore& store, const Digest& digest, std::int64_t size, int fd, std::int64_t received) : store_(&store), digest_(digest), size_(size), received_(received), fd_(fd) {}
+        BlobStore* store_;
+        Digest digest_;
+        std::int64_t size_, received_;
+        int fd_;
+    };
+    // aborted: another upload of it is under way, or `offset` is not received_bytes (0 starts anew).
+    [[nodiscard]] Result<Upload> upload(const Digest& digest, std::int64_t size, std::int64_t offset);
+
+  private:
+    explicit BlobStore(std::string folder) : folder_(std::move(folder)) {}
+    [[nodiscard]] std::string path_of(const Digest& digest) const;
+    [[nodiscard]] std::string part_path(const Digest& digest) const;
+    [[nodiscard]] Result<void> publish(const std::string& temporary, const Digest& digest) const;
+
+    const std::string folder_;
+    mutable std::mutex mutex_;
+    std::set<Digest> uploading_;  // guarded by mutex_
+};
+
+}  // namespace drtv::farm

@@ -1,0 +1,266 @@
+#include "bakerd/farm/database.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sqlite3.h>
+
+#include <utility>
+
+namespace drtv::farm {
+namespace {
+
+constexpr int schema_version = 1;
+
+constexpr const char* schema = R"sql(
+CREATE TABLE map (manifest TEXT PRIMARY KEY, summary TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE job (
+  id INTEGER PRIMARY KEY AUTOINCREMENT, request_id TEXT UNIQUE, manifest TEXT NOT NULL, preset TEXT NOT NULL,
+  settings TEXT NOT NULL, overrides TEXT NOT NULL, region TEXT NOT NULL, state INTEGER NOT NULL, error TEXT NOT NULL,
+  sectors_cached INTEGER NOT NULL, created INTEGER NOT NULL, ended INTEGER NOT NULL);
+CREATE TABLE task (
+  id INTEGER PRIMARY KEY, key TEXT UNIQUE NOT NULL, manifest TEXT NOT NULL, i INTEGER NOT NULL, j INTEGER NOT NULL,
+  settings TEXT NOT NULL, state INTEGER NOT NULL, failed_attempts INTEGER NOT NULL, result TEXT NOT NULL,
+  size INTEGER NOT NULL, probes INTEGER NOT NULL, rays INTEGER NOT NULL, error TEXT NOT NULL);
+CREATE TABLE job_task (job INTEGER NOT NULL, task INTEGER NOT NULL, PRIMARY KEY (job, task)) WITHOUT ROWID;
+)sql";
+
+constexpr const char* task_columns = "id, key, manifest, i, j, settings, state, failed_attempts, result, size, probes, rays, error";
+constexpr const char* job_columns = "id, request_id, manifest, preset, settings, overrides, region, state, error, sectors_cached, created, ended";
+
+Digest stored_digest(const std::string& hex) { return map::digest_from_hex(hex).value_or(Digest{}); }
+
+}  // namespace
+
+// A prepared statement: bind in order, step, read in order.
+class Database::Statement {
+  public:
+    Statement(Database& database, const std::string& sql) : database_(database) { sqlite3_prepare_v2(database.handle_, sql.c_str(), -1, &statement_, nullptr); }
+    ~Statement() { sqlite3_finalize(statement_); }
+    Statement(const Statement&) = delete;
+    Statement& operator=(const Statement&) = delete;
+
+    Statement& bind(std::int64_t value) {
+        sqlite3_bind_int64(statement_, ++bound_, value);
+        return *this;
+    }
+    Statement& bind(const std::string& value) {
+        sqlite3_bind_text(statement_, ++bound_, value.c_str(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
+        return *this;
+    }
+    Statement& bind_null() {
+        ++bound_;
+        return *this;
+    }
+
+    // True: a row is there to read.
+    Result<bool> step() {
+        read_ = 0;
+        const int code = statement_ == nullptr ? SQLITE_ERROR : sqlite3_step(statement_);
+        if (code == SQLITE_ROW) return true;
+        if (code == SQLITE_DONE) return false;
+        return database_.error("use");
+    }
+    Result<void> run() {
+        const auto row = step();
+        if (!row) return tl::unexpected(row.error());
+        return {};
+    }
+    std::int64_t integer() { return sqlite3_column_int64(statement_, read_++); }
+    std::string text() {
+        const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, read_));
+        const int size = sqlite3_column_bytes(statement_, read_++);
+        return bytes == nullptr ? std::string() : std::string(bytes, static_cast<std::size_t>(size));
+    }
+
+    TaskRow task() {
+        TaskRow row;
+        row.id = integer();
+        row.key = stored_digest(text());
+        row.manifest = stored_digest(text());
+        row.sector.i = static_cast<std::int32_t>(integer());
+        row.sector.j = static_cast<std::int32_t>(integer());
+        row.settings = decode_settings(text()).value_or(bake::Settings{});
+        row.state = static_cast<TaskState>(integer());
+        row.failed_attempts = static_cast<int>(integer());
+        row.result.result = stored_digest(text());
+        row.result.size_bytes = integer();
+        row.result.probes = integer();
+        row.result.rays = integer();
+        row.error = text();
+        return row;
+    }
+    Result<std::optional<TaskRow>> one_task() {
+        const auto row = step();
+        if (!row) return tl::unexpected(row.error());
+        if (!*row) return std::nullopt;
+        return task();
+    }
+    void bind_task(const TaskRow& row) {
+        bind(to_hex(row.key)).bind(to_hex(row.manifest)).bind(row.sector.i).bind(row.sector.j).bind(encode_settings(row.settings));
+        bind(static_cast<std::int64_t>(row.state)).bind(row.failed_attempts).bind(to_hex(row.result.result));
+        bind(row.result.size_bytes).bind(row.result.probes).bind(row.result.rays).bind(row.error);
+    }
+
+  private:
+    Database& database_;
+    sqlite3_stmt* statement_ = nullptr;
+    int bound_ = 0, read_ = 0;
+};
+
+tl::unexpected<Error> Database::error(const char* doing) const {
+    const int code = sqlite3_errcode(handle_);
+    const ErrorCode kind = code == SQLITE_FULL ? ErrorCode::resource_exhausted : ErrorCode::internal;
+    return fail(kind, fmt::format("cannot {} the farm's database: {}", doing, sqlite3_errmsg(handle_)));
+}
+
+Result<void> Database::execute(const char* sql) {
+    if (sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) return error("use");
+    return {};
+}
+
+Result<std::unique_ptr<Database>> Database::open(const std::string& path) {
+    sqlite3* handle = nullptr;
+    const int code = sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
+    std::unique_ptr<Database> database(new Database(handle));
+    if (code != SQLITE_OK) return database->error("open");
+    sqlite3_busy_timeout(handle, 5000);
+    if (auto done = database->execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;"); !done) return tl::unexpected(done.error());
+    std::int64_t version = 0;
+    {
+        Statement query(*database, "PRAGMA user_version");
+        const auto row = query.step();
+        if (!row) return tl::unexpected(row.error());
+        version = query.integer();
+    }
+    if (version > schema_version) return fail(ErrorCode::failed_precondition, fmt::format("{} was written by a newer bakerd (schema {}, this one knows {})", path, version, schema_version));
+    if (version == 0) {
+        const auto created = database->transaction([&]() -> Result<void> {
+            if (auto done = database->execute(schema); !done) return done;
+            return database->execute(fmt::format("PRAGMA user_version={}", schema_version).c_str());
+        });
+        if (!created) return tl::unexpected(created.error());
+    }
+    return database;
+}
+
+Database::~Database() { sqlite3_close(handle_); }
+
+Result<void> Database::transaction(const std::function<Result<void>()>& work) {
+    if (auto begun = execute("BEGIN IMMEDIATE"); !begun) return begun;
+    Result<void> done = work();
+    if (done) done = execute("COMMIT");
+    if (!done) static_cast<void>(execute("ROLLBACK"));
+    return done;
+}
+
+Result<void> Database::put_map(const Digest& manifest, const InspectAnswer& summary) {
+    Statement statement(*this, "INSERT OR REPLACE INTO map VALUES (?, ?)");
+    return statement.bind(to_hex(manifest)).bind(encode(WorkerAnswer{0, summary})).run();
+}
+
+Result<std::optional<InspectAnswer>> Database::map(const Digest& manifest) {
+    Statement statement(*this, "SELECT summary FROM map WHERE manifest = ?");
+    const auto row = statement.bind(to_hex(manifest)).step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return std::nullopt;
+    const auto answer = decode_answer(statement.text());
+    if (!answer || !std::holds_alternative<InspectAnswer>(answer->what)) return std::nullopt;
+    return std::get<InspectAnswer>(answer->what);
+}
+
+Result<void> Database::insert_job(JobRow& job) {
+    Statement statement(*this, fmt::format("INSERT INTO job ({}) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", job_columns));
+    if (job.request_id.empty()) statement.bind_null();
+    else statement.bind(job.request_id);
+    statement.bind(to_hex(job.manifest)).bind(job.preset).bind(encode_settings(job.settings)).bind(job.overrides).bind(job.region);
+    statement.bind(static_cast<std::int64_t>(job.state)).bind(job.error).bind(job.sectors_cached).bind(job.created_seconds).bind(job.ended_seconds);
+    if (auto done = statement.run(); !done) return done;
+    job.id = sqlite3_last_insert_rowid(handle_);
+    return {};
+}
+
+Result<void> Database::update_job(const JobRow& job) {
+    Statement statement(*this, "UPDATE job SET state = ?, error = ?, ended = ? WHERE id = ?");
+    return statement.bind(static_cast<std::int64_t>(job.state)).bind(job.error).bind(job.ended_seconds).bind(job.id).run();
+}
+
+Result<std::vector<JobRow>> Database::jobs() {
+    Statement statement(*this, fmt::format("SELECT {} FROM job ORDER BY id", job_columns));
+    std::vector<JobRow> rows;
+    for (;;) {
+        const auto row = statement.step();
+        if (!row) return tl::unexpected(row.error());
+        if (!*row) return rows;
+        JobRow job;
+        job.id = statement.integer();
+        job.request_id = statement.text();
+        job.manifest = stored_digest(statement.text());
+        job.preset = statement.text();
+        job.settings = decode_settings(statement.text()).value_or(bake::Settings{});
+        job.overrides = statement.text();
+        job.region = statement.text();
+        job.state = static_cast<JobState>(statement.integer());
+        job.error = statement.text();
+        job.sectors_cached = statement.integer();
+        job.created_seconds = statement.integer();
+        job.ended_seconds = statement.integer();
+        rows.push_back(std::move(job));
+    }
+}
+
+Result<void> Database::add_job_task(std::int64_t job, std::int64_t task) {
+    Statement statement(*this, "INSERT INTO job_task VALUES (?, ?)");
+    return statement.bind(job).bind(task).run();
+}
+
+Result<std::vector<TaskRow>> Database::job_tasks(std::int64_t job, std::int64_t first, std::int64_t count) {
+    Statement statement(*this, fmt::format("SELECT {} FROM task WHERE id IN (SELECT task FROM job_task WHERE job = ?) ORDER BY j, i LIMIT ? OFFSET ?", task_columns));
+    statement.bind(job).bind(count).bind(first);
+    std::vector<TaskRow> rows;
+    for (;;) {
+        const auto row = statement.step();
+        if (!row) return tl::unexpected(row.error());
+        if (!*row) return rows;
+        rows.push_back(statement.task());
+    }
+}
+
+Result<std::optional<TaskRow>> Database::job_task(std::int64_t job, map::SectorCoordinate sector) {
+    Statement statement(*this, fmt::format("SELECT {} FROM task WHERE i = ? AND j = ? AND id IN (SELECT task FROM job_task WHERE job = ?)", task_columns));
+    return statement.bind(sector.i).bind(sector.j).bind(job).one_task();
+}
+
+Result<JobCounts> Database::job_counts(std::int64_t job) {
+    Statement statement(*this, "SELECT count(*), total(state = 1), total(state = 2), total(probes) FROM task WHERE id IN (SELECT task FROM job_task WHERE job = ?)");
+    const auto row = statement.bind(job).step();
+    if (!row) return tl::unexpected(row.error());
+    JobCounts counts;
+    counts.total = statement.integer();
+    counts.done = statement.integer();
+    counts.failed = statement.integer();
+    counts.probes = statement.integer();
+    return counts;
+}
+
+Result<void> Database::insert_task(TaskRow& task) {
+    Statement statement(*this, fmt::format("INSERT INTO task ({}) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", task_columns));
+    statement.bind_task(task);
+    if (auto done = statement.run(); !done) return done;
+    task.id = sqlite3_last_insert_rowid(handle_);
+    return {};
+}
+
+Result<void> Database::update_task(const TaskRow& task) {
+    Statement statement(*this,
+                        "UPDATE task SET key = ?, manifest = ?, i = ?, j = ?, settings = ?, state = ?, failed_attempts = ?, result = ?, size = ?, probes = ?, rays = ?, error = ? "
+                        "WHERE id = ?");
+    statement.bind_task(task);
+    return statement.bind(task.id).run();
+}
+
+Result<std::optional<TaskRow>> Database::task_by_key(const Digest& key) {
+    Statement statement(*this, fmt::format("SELECT {} FROM task WHERE key = ?", task_columns));
+    return statement.bind(to_hex(key)).one_task();
+}
+
+}  // namespace drtv::farm

@@ -1,0 +1,394 @@
+#include "bakerd/farm/farm.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+namespace drtv::farm {
+namespace {
+
+std::int64_t unix_seconds() { return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
+// What a sector's file depends on, as far as is known before it is baked.
+Digest task_key(const Digest& content, const Digest& settings_key, map::SectorCoordinate sector) {
+    map::Hasher hasher;
+    hasher.add_sized(std::string_view("drtv task"));
+    hasher.add(content);
+    hasher.add(settings_key);
+    hasher.add(sector.i);
+    hasher.add(sector.j);
+    return hasher.finish();
+}
+
+}  // namespace
+
+Farm::Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<BlobStore> blobs, std::unique_ptr<Database> database)
+    : options_(std::move(options)), folder_(std::move(folder)), blobs_(std::move(blobs)), database_(std::move(database)) {}
+
+Result<std::unique_ptr<Farm>> Farm::open(Options options) {
+    auto folder = DataFolder::lock(options.data_folder);
+    if (!folder) return tl::unexpected(folder.error());
+    auto blobs = BlobStore::open((*folder)->blobs());
+    if (!blobs) return tl::unexpected(blobs.error());
+    auto database = Database::open((*folder)->database());
+    if (!database) return tl::unexpected(database.error());
+    std::unique_ptr<Farm> farm(new Farm(std::move(options), std::move(*folder), std::move(*blobs), std::move(*database)));
+    if (auto loaded = farm->load(); !loaded) return tl::unexpected(loaded.error());
+    LocalExecutor::Callbacks callbacks;
+    callbacks.next = [&farm = *farm] { return farm.next_task(); };
+    callbacks.finished = [&farm = *farm](std::uint64_t id, int failed_attempts, const Outcome& outcome) { farm.task_finished(static_cast<std::int64_t>(id), failed_attempts, outcome); };
+    farm->executor_ = std::make_unique<LocalExecutor>(LocalExecutor::Options{farm->options_.worker_command, farm->options_.threads}, std::move(callbacks));
+    farm->executor_->wake();
+    return farm;
+}
+
+Farm::~Farm() { executor_.reset(); }
+
+void Farm::stop(std::chrono::milliseconds patience) {
+    if (executor_) executor_->drain(patience);
+}
+
+Result<void> Farm::load() {
+    const std::lock_guard lock(mutex_);
+    auto rows = database_->jobs();
+    if (!rows) return tl::unexpected(rows.error());
+    for (JobRow& row : *rows) {
+        const std::int64_t id = row.id;
+        Job& job = jobs_[id];
+        job.row = std::move(row);
+        if (job.row.state != JobState::running) continue;
+        auto tasks = database_->job_tasks(id);
+        if (!tasks) return tl::unexpected(tasks.error());
+        std::vector<map::SectorCoordinate> sectors;
+        for (const TaskRow& task : *tasks) sectors.push_back(task.sector);
+        const auto order = sectors_of(std::nullopt, sectors);
+        if (!order) return tl::unexpected(order.error());
+        adopt(job, std::move(*tasks), *order);
+        spdlog::info("job {} goes on: {} of {} sectors are done", id, job.counts.done, job.counts.total);
+        end_job_if_complete(job);
+    }
+    return {};
+}
+
+// Brings a running job's tasks into memory and the unfinished ones into the queue, in the given order.
+void Farm::adopt(Job& job, std::vector<TaskRow> tasks, const std::vector<map::SectorCoordinate>& order) {
+    std::map<map::SectorCoordinate, std::int64_t> id_of;
+    for (TaskRow& row : tasks) {
+        const std::int64_t id = row.id;
+        id_of[row.sector] = id;
+        job.tasks.push_back(id);
+        ++job.counts.total;
+        if (row.state == TaskState::done) {
+            ++job.counts.done;
+            job.counts.probes += row.result.probes;
+        }
+        if (row.state == TaskState::failed) ++job.counts.failed;
+        const auto [entry, added] = tasks_.try_emplace(id);
+        Task& task = entry->second;
+        if (added) task.row = std::move(row);
+        task.jobs.push_back(job.row.id);
+    }
+    for (const map::SectorCoordinate& sector : order) {
+        if (tasks_[id_of[sector]].row.state == TaskState::pending) waiting_.push_back(id_of[sector]);
+    }
+}
+
+Result<MapView> Farm::create_map(Manifest given) {
+    auto manifest = normalised(std::move(given));
+    if (!manifest) return tl::unexpected(manifest.error());
+    for (const ManifestFile& file : manifest->files) {
+        if (!blobs_->has(file.digest)) return fail(ErrorCode::failed_precondition, fmt::format("the file '{}' has not been uploaded", file.path));
+    }
+    const std::string bytes = encode_manifest(*manifest);
+    const auto id = blobs_->put({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    if (!id) return tl::unexpected(id.error());
+    {
+        const std::lock_guard lock(mutex_);
+        auto known = database_->map(*id);
+        if (!known) return tl::unexpected(known.error());
+        if (*known) return MapView{*id, std::move(*manifest), std::move(**known)};
+    }
+    const Outcome outcome = executor_->inspect(*id).get();
+    if (const auto* failure = std::get_if<FailureAnswer>(&outcome)) {
+        return fail(failure->may_retry ? ErrorCode::unavailable : ErrorCode::invalid_argument, failure->sentence);
+    }
+    const auto& summary = std::get<InspectAnswer>(outcome);
+    const std::lock_guard lock(mutex_);
+    if (auto put = database_->put_map(*id, summary); !put) return tl::unexpected(put.error());
+    return MapView{*id, std::move(*manifest), summary};
+}
+
+Result<MapView> Farm::get_map(const Digest& id) {
+    std::optional<InspectAnswer> summary;
+    {
+        const std::lock_guard lock(mutex_);
+        auto found = database_->map(id);
+        if (!found) return tl::unexpected(found.error());
+        summary = std::move(*found);
+    }
+    if (!summary) return fail(ErrorCode::not_found, fmt::format("there is no map {}", to_hex(id)));
+    const auto bytes = blobs_->get(id);
+    if (!bytes) return tl::unexpected(bytes.error());
+    auto manifest = decode_manifest({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    if (!manifest) return tl::unexpected(manifest.error());
+    return MapView{id, std::move(*manifest), std::move(*summary)};
+}
+
+Result<JobView> Farm::create_job(const JobRequest& request) {
+    const auto settings = settings_of(request);
+    if (!settings) return tl::unexpected(settings.error());
+    if (request.request_id.size() > 64) return fail(ErrorCode::invalid_argument, "the request id is longer than 64 bytes");
+    std::unique_lock lock(mutex_);
+    if (!request.request_id.empty()) {
+        const auto same = std::find_if(jobs_.begin(), jobs_.end(), [&](const auto& entry) { return entry.second.row.request_id == request.request_id; });
+        if (same != jobs_.end()) return view_of(same->second);
+    }
+    auto map = database_->map(request.manifest);
+    if (!map) return tl::unexpected(map.error());
+    if (!*map) return fail(ErrorCode::not_found, fmt::format("there is no map {}", to_hex(request.manifest)));
+    const auto sectors = sectors_of(request.region, (*map)->sectors);
+    if (!sectors) return tl::unexpected(sectors.error());
+
+    Job job;
+    job.row.request_id = request.request_id;
+    job.row.manifest = request.manifest;
+    job.row.preset = request.preset;
+    job.row.settings = *settings;
+    job.row.overrides = encode_overrides(request.overrides);
+    job.row.region = encode_region(request.region);
+    job.row.created_seconds = unix_seconds();
+    auto tasks = plan(job.row, **map, *sectors);
+    if (!tasks) return tl::unexpected(tasks.error());
+    const std::int64_t id = job.row.id;
+    Job& kept = jobs_[id] = std::move(job);
+    adopt(kept, std::move(*tasks), *sectors);
+    spdlog::info("job {}: {} sectors, {} of them in the cache", id, kept.counts.total, kept.row.sectors_cached);
+    end_job_if_complete(kept);
+    auto view = view_of(kept);
+    lock.unlock();
+    executor_->wake();
+    return view;
+}
+
+// Writes the job with its tasks, new or known, in one transaction.
+Result<std::vector<TaskRow>> Farm::plan(JobRow& row, const InspectAnswer& map, const std::vector<map::SectorCoordinate>& sectors) {
+    const Digest settings_key = bake::settings_key(row.settings);
+    std::vector<TaskRow> tasks;
+    const auto done = database_->transaction([&]() -> Result<void> {
+        for (const map::SectorCoordinate& sector : sectors) {
+            auto task = find_or_add_task(row, map.content, settings_key, sector);
+            if (!task) return tl::unexpected(task.error());
+            if (task->state == TaskState::done) ++row.sectors_cached;
+            tasks.push_back(std::move(*task));
+        }
+        if (auto inserted = database_->insert_job(row); !inserted) return inserted;
+        for (const TaskRow& task : tasks) {
+            if (auto added = database_->add_job_task(row.id, task.id); !added) return added;
+        }
+        return {};
+    });
+    if (!done) return tl::unexpected(done.error());
+    return tasks;
+}
+
+Result<TaskRow> Farm::find_or_add_task(const JobRow& job, const Digest& content, const Digest& settings_key, map::SectorCoordinate sector) {
+    const Digest key = task_key(content, settings_key, sector);
+    auto known = database_->task_by_key(key);
+    if (!known) return tl::unexpected(known.error());
+    if (!*known) {
+        TaskRow row;
+        row.key = key;
+        row.manifest = job.manifest;
+        row.sector = sector;
+        row.settings = job.settings;
+        if (auto inserted = database_->insert_task(row); !inserted) return tl::unexpected(inserted.error());
+        return row;
+    }
+    TaskRow row = std::move(**known);
+    const bool lost = row.state == TaskState::done && !blobs_->has(row.result.result);
+    if (row.state == TaskState::failed || lost) {
+        // Asked for again: a new chance, from the map that was just submitted.
+        row.state = TaskState::pending;
+        row.failed_attempts = 0;
+        row.error.clear();
+        row.manifest = job.manifest;
+        if (auto updated = database_->update_task(row); !updated) return tl::unexpected(updated.error());
+        const auto in_memory = tasks_.find(row.id);
+        if (in_memory != tasks_.end()) in_memory->second.row = row;
+    }
+    return row;
+}
+
+std::optional<BakeRequest> Farm::next_task() {
+    const std::lock_guard lock(mutex_);
+    while (!waiting_.empty()) {
+        const auto found = tasks_.find(waiting_.front());
+        waiting_.pop_front();
+        // Queued twice by two jobs, or its job was cancelled.
+        if (found == tasks_.end() || found->second.running || found->second.row.state != TaskState::pending) continue;
+        Task& task = found->second;
+        task.running = true;
+        for (std::int64_t id : task.jobs) {
+            Job& job = jobs_.at(id);
+            if (!job.started) job.started = Clock::now();
+        }
+        return BakeRequest{static_cast<std::uint64_t>(task.row.id), task.row.manifest, task.row.sector, task.row.settings};
+    }
+    return std::nullopt;
+}
+
+void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& outcome) {
+    const std::lock_guard lock(mutex_);
+    const auto found = tasks_.find(id);
+    if (found == tasks_.end()) return;
+    Task& task = found->second;
+    task.running = false;
+    task.row.failed_attempts = failed_attempts;
+    if (const auto* baked = std::get_if<BakeAnswer>(&outcome)) {
+        task.row.state = TaskState::done;
+        task.row.result = *baked;
+    } else {
+        const auto* failure = std::get_if<FailureAnswer>(&outcome);
+        task.row.state = TaskState::failed;
+        task.row.error = failure != nullptr ? failure->sentence : "the worker gave an answer to another question";
+        spdlog::error("sector ({}, {}): {}", task.row.sector.i, task.row.sector.j, task.row.error);
+    }
+    if (auto updated = database_->update_task(task.row); !updated) {
+        // The result is in the store but not in the books: after a restart the sector is baked again.
+        spdlog::error("{}", updated.error().message);
+    }
+    const std::vector<std::int64_t> jobs = task.jobs;
+    const TaskRow row = task.row;
+    for (std::int64_t job_id : jobs) {
+        Job& job = jobs_.at(job_id);
+        if (row.state == TaskState::done) {
+            ++job.counts.done;
+            ++job.baked;
+            job.counts.probes += row.result.probes;
+            job.rays += row.result.rays;
+        } else {
+            ++job.counts.failed;
+        }
+        end_job_if_complete(job);
+        changed(job);
+    }
+    if (jobs.empty()) tasks_.erase(id);
+}
+
+void Farm::end_job_if_complete(Job& job) {
+    if (job.row.state != JobState::running || job.counts.done + job.counts.failed < job.counts.total) return;
+    if (job.counts.failed == 0) {
+        end_job(job, JobState::succeeded, "");
+        return;
+    }
+    const auto first = std::find_if(job.tasks.begin(), job.tasks.end(), [&](std::int64_t id) { return tasks_.at(id).row.state == TaskState::failed; });
+    const TaskRow& row = tasks_.at(*first).row;
+    end_job(job, JobState::failed, fmt::format("{} of {} sectors failed; sector ({}, {}): {}", job.counts.failed, job.counts.total, row.sector.i, row.sector.j, row.error));
+}
+
+void Farm::end_job(Job& job, JobState state, std::string error) {
+    job.row.state = state;
+    job.row.error = std::move(error);
+    job.row.ended_seconds = unix_seconds();
+    if (auto updated = database_->update_job(job.row); !updated) spdlog::error("{}", updated.error().message);
+    for (std::int64_t id : job.tasks) {
+        const auto found = tasks_.find(id);
+        if (found == tasks_.end()) continue;
+        std::erase(found->second.jobs, job.row.id);
+        if (found->second.jobs.empty() && !found->second.running) tasks_.erase(found);
+    }
+    job.tasks.clear();
+    spdlog::info("job {} {}", job.row.id, state == JobState::succeeded ? "succeeded" : state == JobState::cancelled ? "was cancelled" : "failed: " + job.row.error);
+    changed(job);
+}
+
+void Farm::changed(Job& job) {
+    ++job.version;
+    job_changed_.notify_all();
+}
+
+Result<Farm::Job*> Farm::find_job(std::int64_t id) {
+    const auto found = jobs_.find(id);
+    if (found == jobs_.end()) return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
+    return &found->second;
+}
+
+Result<JobView> Farm::view_of(const Job& job) {
+    JobView view{job.row, job.counts, job.rays, 0, 0, job.version};
+    if (job.row.state != JobState::running) {
+        const auto counts = database_->job_counts(job.row.id);
+        if (!counts) return tl::unexpected(counts.error());
+        view.counts = *counts;
+        return view;
+    }
+    if (job.started && job.baked > 0) {
+        const double seconds = std::chrono::duration<double>(Clock::now() - *job.started).count();
+        view.rays_per_second = static_cast<double>(job.rays) / seconds;
+        const std::int64_t left = job.counts.total - job.counts.done - job.counts.failed;
+        view.seconds_left = seconds / static_cast<double>(job.baked) * static_cast<double>(left);
+    }
+    return view;
+}
+
+Result<JobView> Farm::get_job(std::int64_t id) {
+    const std::lock_guard lock(mutex_);
+    const auto job = find_job(id);
+    if (!job) return tl::unexpected(job.error());
+    return view_of(**job);
+}
+
+Result<std::vector<JobView>> Farm::list_jobs(std::int64_t before, std::size_t count) {
+    const std::lock_guard lock(mutex_);
+    std::vector<JobView> views;
+    for (auto entry = std::make_reverse_iterator(jobs_.lower_bound(before)); entry != jobs_.rend() && views.size() < count; ++entry) {
+        auto view = view_of(entry->second);
+        if (!view) return tl::unexpected(view.error());
+        views.push_back(std::move(*view));
+    }
+    return views;
+}
+
+Result<JobView> Farm::cancel_job(std::int64_t id) {
+    const std::lock_guard lock(mutex_);
+    const auto job = find_job(id);
+    if (!job) return tl::unexpected(job.error());
+    if ((*job)->row.state == JobState::running) end_job(**job, JobState::cancelled, "");
+    return view_of(**job);
+}
+
+Result<JobView> Farm::wait_for_change(std::int64_t id, std::uint64_t seen, std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    const auto job = find_job(id);
+    if (!job) return tl::unexpected(job.error());
+    // Jobs are never removed, and a map keeps its elements in place.
+    job_changed_.wait_for(lock, patience, [&] { return (*job)->version > seen; });
+    return view_of(**job);
+}
+
+Result<std::vector<SectorView>> Farm::list_sectors(std::int64_t id, std::int64_t first, std::int64_t count) {
+    const std::lock_guard lock(mutex_);
+    if (auto job = find_job(id); !job) return tl::unexpected(job.error());
+    auto rows = database_->job_tasks(id, first, count);
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<SectorView> views;
+    for (TaskRow& row : *rows) {
+        const auto task = tasks_.find(row.id);
+        const bool running = task != tasks_.end() && task->second.running;
+        views.push_back({std::move(row), running});
+    }
+    return views;
+}
+
+Result<SectorView> Farm::get_sector(std::int64_t id, map::SectorCoordinate sector) {
+    const std::lock_guard lock(mutex_);
+    if (auto job = find_job(id); !job) return tl::unexpected(job.error());
+    auto row = database_->job_task(id, sector);
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return fail(ErrorCode::not_found, fmt::format("job {} has no sector ({}, {})", id, sector.i, sector.j));
+    const auto task = tasks_.find((*row)->id);
+    const bool running = task != tasks_.end() && task->second.running;
+    return SectorView{std::move(**row), running};
+}
+
+}  // namespace drtv::farm

@@ -1,0 +1,182 @@
+#include "bakerd/farm/local_executor.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace drtv::farm {
+
+LocalExecutor::LocalExecutor(Options options, Callbacks callbacks)
+    : options_(std::move(options)), callbacks_(std::move(callbacks)), window_(static_cast<std::size_t>(options_.threads) + 2), thread_([this] { run(); }) {}
+
+LocalExecutor::~LocalExecutor() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+    worker_.reset();
+    // Nobody waits for an answer that cannot come.
+    for (auto& [id, request] : in_flight_) {
+        if (request.promise) request.promise->set_value(FailureAnswer{"the server is stopping", true});
+    }
+    for (Request& request : inspections_) request.promise->set_value(FailureAnswer{"the server is stopping", true});
+    for (Request& request : again_) {
+        if (request.promise) request.promise->set_value(FailureAnswer{"the server is stopping", true});
+    }
+}
+
+void LocalExecutor::wake() {
+    {
+        const std::lock_guard lock(mutex_);
+        woken_ = true;
+    }
+    changed_.notify_all();
+}
+
+std::future<Outcome> LocalExecutor::inspect(const map::Digest& manifest) {
+    Request request;
+    request.what = InspectRequest{0, manifest};
+    request.promise = std::make_shared<std::promise<Outcome>>();
+    std::future<Outcome> future = request.promise->get_future();
+    {
+        const std::lock_guard lock(mutex_);
+        if (draining_ || stopping_) request.promise->set_value(FailureAnswer{"the server is stopping", true});
+        else inspections_.push_back(std::move(request));
+    }
+    changed_.notify_all();
+    return future;
+}
+
+void LocalExecutor::drain(std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    draining_ = true;
+    changed_.wait_for(lock, patience, [this] { return in_flight_count_ == 0; });
+}
+
+void LocalExecutor::run() {
+    for (;;) {
+        std::deque<Event> events;
+        {
+            std::unique_lock lock(mutex_);
+            in_flight_count_ = in_flight_.size();
+            if (in_flight_count_ == 0) changed_.notify_all();
+            changed_.wait(lock, [this] { return stopping_ || woken_ || !events_.empty() || !inspections_.empty(); });
+            if (stopping_) return;
+            woken_ = false;
+            events.swap(events_);
+        }
+        for (const Event& event : events) handle(event);
+        fill_window();
+    }
+}
+
+void LocalExecutor::handle(const Event& event) {
+    if (event.worker != worker_number_) return;  // the last words of one that has been replaced
+    if (const auto* answer = std::get_if<WorkerAnswer>(&event.what)) handle_answer(*answer);
+    else handle_death(std::get<std::string>(event.what));
+}
+
+void LocalExecutor::handle_answer(const WorkerAnswer& answer) {
+    const auto found = in_flight_.find(answer.id);
+    if (found == in_flight_.end()) return;
+    Request request = std::move(found->second);
+    in_flight_.erase(found);
+    const auto* failure = std::get_if<FailureAnswer>(&answer.what);
+    if (failure != nullptr && failure->may_retry) retry_or_fail(std::move(request), failure->sentence);
+    else finish(request, answer.what);
+}
+
+void LocalExecutor::handle_death(const std::string& how) {
+    spdlog::warn("the worker {} with {} requests in flight", how, in_flight_.size());
+    worker_.reset();
+    std::map<std::uint64_t, Request> lost;
+    lost.swap(in_flight_);
+    for (auto& [id, request] : lost) {
+        request.alone = true;
+        retry_or_fail(std::move(request), fmt::format("the worker {} while at it", how));
+    }
+}
+
+void LocalExecutor::retry_or_fail(Request request, const std::string& sentence) {
+    if (++request.failed_attempts < max_attempts) {
+        again_.push_back(std::move(request));
+        return;
+    }
+    finish(request, FailureAnswer{fmt::format("{} (tried {} times)", sentence, request.failed_attempts), false});
+}
+
+void LocalExecutor::finish(Request& request, Outcome outcome) {
+    if (request.promise) request.promise->set_value(std::move(outcome));
+    else callbacks_.finished(request.caller_id, request.failed_attempts, std::move(outcome));
+}
+
+std::optional<LocalExecutor::Request> LocalExecutor::next_request() {
+    {
+        const std::lock_guard lock(mutex_);
+        if (draining_ || stopping_) return std::nullopt;
+        if (!inspections_.empty()) {
+            Request request = std::move(inspections_.front());
+            inspections_.pop_front();
+            return request;
+        }
+    }
+    if (!again_.empty()) {
+        // A suspect runs when nothing else does, and nothing joins it.
+        if (again_.front().alone && !in_flight_.empty()) return std::nullopt;
+        Request request = std::move(again_.front());
+        again_.pop_front();
+        return request;
+    }
+    std::optional<BakeRequest> task = callbacks_.next();
+    if (!task) return std::nullopt;
+    Request request;
+    request.caller_id = task->id;
+    request.what = *task;
+    return request;
+}
+
+void LocalExecutor::fill_window() {
+    while (in_flight_.size() < window_) {
+        if (in_flight_.size() == 1 && in_flight_.begin()->second.alone) return;
+        std::optional<Request> request = next_request();
+        if (!request) return;
+        send(std::move(*request));
+    }
+}
+
+bool LocalExecutor::ensure_worker() {
+    if (worker_) return true;
+    const std::uint64_t number = ++worker_number_;
+    const auto post = [this, number](auto what) {
+        {
+            const std::lock_guard lock(mutex_);
+            events_.push_back({number, std::move(what)});
+        }
+        changed_.notify_all();
+    };
+    auto worker = WorkerProcess::start(options_.worker_command, {[post](WorkerAnswer answer) { post(std::move(answer)); }, [post](std::string how) { post(std::move(how)); }});
+    if (!worker) {
+        spdlog::error("{}", worker.error().message);
+        return false;
+    }
+    worker_ = std::move(*worker);
+    spdlog::info("worker {} started", worker_->pid());
+    return true;
+}
+
+void LocalExecutor::send(Request request) {
+    if (!ensure_worker()) {
+        // The machine may be out of processes; the attempts bound how long we hope.
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        retry_or_fail(std::move(request), "no worker could be started");
+        return;
+    }
+    const std::uint64_t id = next_id_++;
+    std::visit([id](auto& r) { r.id = id; }, request.what);
+    const auto [entry, added] = in_flight_.emplace(id, std::move(request));
+    // A failed write means the worker has died; its death is on its way and finds the request in flight.
+    static_cast<void>(worker_->send(entry->second.what));
+}
+
+}  // namespace drtv::farm

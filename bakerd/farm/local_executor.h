@@ -1,0 +1,105 @@
+// Runs requests on a resident worker process of this machine. A worker's death costs only what was in flight:
+// those requests are tried again one by one, so that the guilty one is found and fails alone.
+#pragma once
+
+#include "bakerd/farm/error.h"
+#include "bakerd/farm/worker_process.h"
+#include "bakerd/farm/worker_protocol.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace drtv::farm {
+
+using Outcome = decltype(WorkerAnswer::what);
+
+// A request is tried this often; two retries after the first failure.
+inline constexpr int max_attempts = 3;
+
+class LocalExecutor {
+  public:
+    struct Options {
+        std::vector<std::string> worker_command;
+        int threads = 1;  // sectors in flight: a few more than threads, so that none waits
+    };
+    // Called from the executor's own thread, never under its lock.
+    struct Callbacks {
+        std::function<std::optional<BakeRequest>()> next;  // the next sector to bake; `id` is the caller's
+        std::function<void(std::uint64_t id, int failed_attempts, Outcome outcome)> finished;
+    };
+
+    LocalExecutor(Options options, Callbacks callbacks);
+
+    // Ends the worker; what is still in flight is not reported.
+    ~LocalExecutor();
+    LocalExecutor(const LocalExecutor&) = delete;
+    LocalExecutor& operator=(const LocalExecutor&) = delete;
+
+    // There may be something new behind `next`.
+    void wake();
+
+    // Imports a map in the worker, before any waiting sector.
+    [[nodiscard]] std::future<Outcome> inspect(const map::Digest& manifest);
+
+    // Takes no more work and waits until what is in flight has finished, at most `patience`.
+    void drain(std::chrono::milliseconds patience);
+
+  private:
+    struct Request {
+        WorkerRequest what;
+        std::uint64_t caller_id = 0;                                // of a sector
+        std::shared_ptr<std::promise<Outcome>> promise;             // of an inspection
+        int failed_attempts = 0;
+        bool alone = false;  // was in flight when a worker died
+    };
+    struct Event {
+        std::uint64_t worker = 0;  // which of the workers started so far
+        std::variant<WorkerAnswer, std::string> what;  // or how the worker died
+    };
+
+    void run();
+    void handle(const Event& event);
+    void handle_answer(const WorkerAnswer& answer);
+    void handle_death(const std::string& how);
+    void retry_or_fail(Request request, const std::string& sentence);
+    void finish(Request& request, Outcome outcome);
+    void fill_window();
+    [[nodiscard]] std::optional<Request> next_request();
+    [[nodiscard]] bool ensure_worker();
+    void send(Request request);
+
+    const Options options_;
+    const Callbacks callbacks_;
+    const std::size_t window_;
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<Event> events_;          // guarded by mutex_
+    std::deque<Request> inspections_;   // guarded by mutex_
+    bool woken_ = false;                // guarded by mutex_
+    bool draining_ = false;             // guarded by mutex_
+    bool stopping_ = false;             // guarded by mutex_
+    std::size_t in_flight_count_ = 0;   // guarded by mutex_; size of in_flight_ for drain()
+
+    // Used by the executor's thread only.
+    std::unique_ptr<WorkerProcess> worker_;
+    std::uint64_t worker_number_ = 0;
+    std::uint64_t next_id_ = 1;
+    std::map<std::uint64_t, Request> in_flight_;  // by the id sent to the worker
+    std::deque<Request> again_;                   // to be tried again, alone
+
+    std::thread thread_;
+};
+
+}  // namespace drtv::farm

@@ -1,0 +1,95 @@
+#include "bakerd/farm/worker_protocol.h"
+
+#include <nlohmann/json.hpp>
+
+namespace drtv::farm {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json to_json(const map::SectorCoordinate& sector) { return Json::array({sector.i, sector.j}); }
+map::SectorCoordinate sector_from(const Json& json) { return {json.at(0).get<std::int32_t>(), json.at(1).get<std::int32_t>()}; }
+
+Json to_json(const bake::Settings& s) { return {{"rays", s.rays}, {"bounces", s.bounces}, {"reach", s.reach_m}, {"min_distance", s.min_distance_m}}; }
+bake::Settings settings_from(const Json& json) {
+    return {json.at("rays").get<std::uint32_t>(), json.at("bounces").get<std::uint32_t>(), json.at("reach").get<float>(), json.at("min_distance").get<float>()};
+}
+
+map::Digest digest_from(const Json& json) {
+    const auto digest = map::digest_from_hex(json.get<std::string>());
+    if (!digest) throw Json::other_error::create(501, "malformed digest", nullptr);
+    return *digest;
+}
+
+// A line from the other side is trusted no further than this: anything odd is nothing.
+template <class Decode>
+auto guarded(std::string_view text, Decode decode) -> std::optional<decltype(decode(Json()))> {
+    try {
+        const Json json = Json::parse(text);
+        return decode(json);
+    } catch (const Json::exception&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+std::string encode(const WorkerRequest& request) {
+    if (const auto* inspect = std::get_if<InspectRequest>(&request)) return line({{"id", inspect->id}, {"op", "inspect"}, {"map", to_hex(inspect->manifest)}});
+    const auto& bake = std::get<BakeRequest>(request);
+    return line({{"id", bake.id}, {"op", "bake"}, {"map", to_hex(bake.manifest)}, {"sector", to_json(bake.sector)}, {"settings", to_json(bake.settings)}});
+}
+
+std::optional<WorkerRequest> decode_request(std::string_view text) {
+    return guarded(text, [](const Json& json) -> WorkerRequest {
+        const auto id = json.at("id").get<std::uint64_t>();
+        if (json.at("op") == "inspect") return InspectRequest{id, digest_from(json.at("map"))};
+        return BakeRequest{id, digest_from(json.at("map")), sector_from(json.at("sector")), settings_from(json.at("settings"))};
+    });
+}
+
+std::string encode(const WorkerAnswer& answer) {
+    Json json = {{"id", answer.id}};
+    if (const auto* inspected = std::get_if<InspectAnswer>(&answer.what)) {
+        Json sectors = Json::array();
+        for (const map::SectorCoordinate& sector : inspected->sectors) sectors.push_back(to_json(sector));
+        json.update({{"content", to_hex(inspected->content)}, {"sectors", std::move(sectors)}, {"objects", inspected->object_count}, {"triangles", inspected->triangle_count}, {"warnings", inspected->warnings}});
+    } else if (const auto* baked = std::get_if<BakeAnswer>(&answer.what)) {
+        json.update({{"result", to_hex(baked->result)}, {"size", baked->size_bytes}, {"probes", baked->probes}, {"rays", baked->rays}});
+    } else {
+        const auto& failure = std::get<FailureAnswer>(answer.what);
+        json.update({{"error", failure.sentence}, {"retry", failure.may_retry}});
+    }
+    return line(json);
+}
+
+std::optional<WorkerAnswer> decode_answer(std::string_view text) {
+    return guarded(text, [](const Json& json) -> WorkerAnswer {
+        WorkerAnswer answer;
+        answer.id = json.at("id").get<std::uint64_t>();
+        if (json.contains("error")) {
+            answer.what = FailureAnswer{json.at("error").get<std::string>(), json.at("retry").get<bool>()};
+        } else if (json.contains("result")) {
+            answer.what = BakeAnswer{digest_from(json.at("result")), json.at("size").get<std::int64_t>(), json.at("probes").get<std::int64_t>(), json.at("rays").get<std::int64_t>()};
+        } else {
+            InspectAnswer inspected;
+            inspected.content = digest_from(json.at("content"));
+            for (const Json& sector : json.at("sectors")) inspected.sectors.push_back(sector_from(sector));
+            inspected.object_count = json.at("objects").get<std::int64_t>();
+            inspected.triangle_count = json.at("triangles").get<std::int64_t>();
+            inspected.warnings = json.at("warnings").get<std::vector<std::string>>();
+            answer.what = std::move(inspected);
+        }
+        return answer;
+    });
+}
+
+std::string encode_settings(const bake::Settings& settings) { return line(to_json(settings)); }
+
+std::optional<bake::Settings> decode_settings(std::string_view text) {
+    return guarded(text, [](const Json& json) { return settings_from(json); });
+}
+
+}  // namespace drtv::farm

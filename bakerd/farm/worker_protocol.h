@@ -1,0 +1,65 @@
+// What daemon and worker say to each other: one JSON object a line, requests on the worker's standard input,
+// answers on its standard output, matched by id and in any order.
+#pragma once
+
+#include "bakerd/bake/settings.h"
+#include "bakerd/map/digest.h"
+#include "bakerd/map/ground.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace drtv::farm {
+
+// Imports a map and says what is in it.
+struct InspectRequest {
+    std::uint64_t id = 0;
+    map::Digest manifest;
+};
+
+// Bakes one sector into the store.
+struct BakeRequest {
+    std::uint64_t id = 0;
+    map::Digest manifest;
+    map::SectorCoordinate sector;
+    bake::Settings settings;
+};
+
+using WorkerRequest = std::variant<InspectRequest, BakeRequest>;
+
+struct InspectAnswer {
+    map::Digest content;
+    std::vector<map::SectorCoordinate> sectors;  // with ground, by (j, i)
+    std::int64_t object_count = 0, triangle_count = 0;
+    std::vector<std::string> warnings;
+};
+
+struct BakeAnswer {
+    map::Digest result;
+    std::int64_t size_bytes = 0, probes = 0, rays = 0;
+};
+
+struct FailureAnswer {
+    std::string sentence;
+    bool may_retry = false;  // a full disk may be better next time, a bad map will not
+};
+
+struct WorkerAnswer {
+    std::uint64_t id = 0;
+    std::variant<InspectAnswer, BakeAnswer, FailureAnswer> what;
+};
+
+[[nodiscard]] std::string encode(const WorkerRequest& request);
+[[nodiscard]] std::string encode(const WorkerAnswer& answer);
+[[nodiscard]] std::optional<WorkerRequest> decode_request(std::string_view line);
+[[nodiscard]] std::optional<WorkerAnswer> decode_answer(std::string_view line);
+
+// Settings as they stand in requests and in the database.
+[[nodiscard]] std::string encode_settings(const bake::Settings& settings);
+[[nodiscard]] std::optional<bake::Settings> decode_settings(std::string_view text);
+
+}  // namespace drtv::farm

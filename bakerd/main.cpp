@@ -1,0 +1,93 @@
+// bakerd: parse, wire, run.
+#include "bakerd/farm/farm.h"
+#include "bakerd/farm/worker.h"
+#include "bakerd/service/server.h"
+#include "bakerd/trace/device.h"
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+namespace {
+
+struct ServeOptions {
+    std::string data, listen = "127.0.0.1:7447", executor = "local";
+    int threads = 0;
+    drtv::service::TlsFiles tls;
+};
+
+int complain(const std::string& sentence) {
+    std::fprintf(stderr, "bakerd: %s\n", sentence.c_str());
+    return 1;
+}
+
+int serve(const ServeOptions& options) {
+    // Blocked in every thread, so that one place waits for them.
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+
+    if (const auto device = drtv::trace::Device::open(); !device) return complain(device.error());
+    const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+    auto farm = drtv::farm::Farm::open({options.data, {self, "worker", "--blobs", options.data + "/blobs", "--threads", std::to_string(threads)}, threads});
+    if (!farm) return complain(farm.error().message);
+    auto server = drtv::service::Server::start(**farm, options.listen, options.tls);
+    if (!server) return complain(server.error());
+    spdlog::info("bakerd listens on {}, keeps its data in {}, bakes on {} threads", (*server)->address(), options.data, threads);
+
+    int signal = 0;
+    sigwait(&signals, &signal);
+    spdlog::info("stopping: the running sectors are finished or put back");
+    (*server)->stop();
+    (*farm)->stop(std::chrono::seconds(10));
+    spdlog::info("stopped");
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    // Talk goes to standard error; colours only on a terminal, and never against NO_COLOR.
+    const bool no_color = std::getenv("NO_COLOR") != nullptr;
+    auto log = no_color ? spdlog::stderr_logger_mt("bakerd") : spdlog::stderr_color_mt("bakerd");
+    log->set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+    spdlog::set_default_logger(log);
+
+    CLI::App app{"bakerd bakes light probes: it takes maps and jobs over gRPC and keeps the sector files."};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "bakerd 0.1.0");
+
+    ServeOptions serve_options;
+    CLI::App* serve_command = app.add_subcommand("serve", "Serve clients until SIGTERM or ctrl-C");
+    serve_command->add_option("--data", serve_options.data, "Folder for database and blobs; made when missing")->required();
+    serve_command->add_option("--listen", serve_options.listen, "Address and port; anything but loopback should have TLS")->capture_default_str();
+    serve_command->add_option("--executor", serve_options.executor, "Where sectors are baked")->check(CLI::IsMember({"local"}))->capture_default_str();
+    serve_command->add_option("--threads", serve_options.threads, "Threads to bake with; 0: all")->check(CLI::Range(0, 1024))->capture_default_str();
+    serve_command->add_option("--tls-cert", serve_options.tls.certificate, "Server certificate (PEM)");
+    serve_command->add_option("--tls-key", serve_options.tls.key, "Its key (PEM)");
+    serve_command->add_option("--tls-client-ca", serve_options.tls.client_ca, "Authority that signs clients' certificates (PEM)");
+    serve_command->set_config("--config", "", "File with the options above, as `name = value` lines");
+
+    drtv::farm::WorkerOptions worker_options;
+    CLI::App* worker_command = app.add_subcommand("worker", "Answer requests on standard input (started by the daemon)");
+    worker_command->add_option("--blobs", worker_options.blob_folder, "Folder of the blob store")->required();
+    worker_command->add_option("--threads", worker_options.threads, "Threads to bake with; 0: all")->check(CLI::Range(0, 1024));
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error);
+    }
+    if (*worker_command) return drtv::farm::run_worker(worker_options);
+    return serve(serve_options);
+}

@@ -1,0 +1,130 @@
+#include "bakerd/service/names.h"
+#include "bakerd/service/services.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <thread>
+
+namespace drtv::service {
+namespace {
+
+// Each watch holds a thread of the server.
+constexpr int max_watchers = 256;
+constexpr std::chrono::milliseconds watch_interval{100};  // at most ten messages a second
+constexpr std::chrono::milliseconds watch_patience{500};  // how soon a gone client or a stopping server is noticed
+constexpr std::int32_t default_page = 50, max_page = 1000;
+
+v1::Job::State to_proto(farm::JobState state) {
+    switch (state) {
+        case farm::JobState::running: return v1::Job::RUNNING;
+        case farm::JobState::succeeded: return v1::Job::SUCCEEDED;
+        case farm::JobState::failed: return v1::Job::FAILED;
+        case farm::JobState::cancelled: return v1::Job::CANCELLED;
+    }
+    return v1::Job::STATE_UNSPECIFIED;
+}
+
+void fill(const farm::JobView& view, v1::Job& out) {
+    const farm::JobRow& row = view.row;
+    out.set_name(job_name(row.id));
+    out.set_map(map_name(row.manifest));
+    out.mutable_settings()->set_preset(row.preset);
+    for (const auto& [key, value] : farm::decode_overrides(row.overrides)) (*out.mutable_settings()->mutable_overrides())[key] = value;
+    if (const auto region = farm::decode_region(row.region)) {
+        out.mutable_region()->set_x0(region->x0);
+        out.mutable_region()->set_y0(region->y0);
+        out.mutable_region()->set_x1(region->x1);
+        out.mutable_region()->set_y1(region->y1);
+    }
+    out.set_state(to_proto(row.state));
+    out.set_error(row.error);
+    out.set_sectors_total(view.counts.total);
+    out.set_sectors_done(view.counts.done);
+    out.set_sectors_failed(view.counts.failed);
+    out.set_sectors_cached(row.sectors_cached);
+    out.set_probes(view.counts.probes);
+    out.set_rays(view.rays);
+    out.set_rays_per_second(view.rays_per_second);
+    out.set_seconds_left(view.seconds_left);
+    out.set_create_time_seconds(row.created_seconds);
+    out.set_end_time_seconds(row.ended_seconds);
+}
+
+grpc::Status answer(const farm::Result<farm::JobView>& view, v1::Job* response) {
+    if (!view) return to_status(view.error());
+    fill(*view, *response);
+    return grpc::Status::OK;
+}
+
+}  // namespace
+
+grpc::Status JobsService::CreateJob(grpc::ServerContext*, const v1::CreateJobRequest* request, v1::Job* response) {
+    const v1::Job& job = request->job();
+    const auto map = map_from_name(job.map());
+    if (!map) return to_status(map.error());
+    farm::JobRequest wanted;
+    wanted.manifest = *map;
+    wanted.preset = job.settings().preset();
+    wanted.overrides.insert(job.settings().overrides().begin(), job.settings().overrides().end());
+    if (job.has_region()) wanted.region = farm::Region{job.region().x0(), job.region().y0(), job.region().x1(), job.region().y1()};
+    wanted.request_id = request->request_id();
+    return answer(farm_.create_job(wanted), response);
+}
+
+grpc::Status JobsService::GetJob(grpc::ServerContext*, const v1::GetJobRequest* request, v1::Job* response) {
+    const auto id = job_from_name(request->name());
+    if (!id) return to_status(id.error());
+    return answer(farm_.get_job(*id), response);
+}
+
+grpc::Status JobsService::ListJobs(grpc::ServerContext*, const v1::ListJobsRequest* request, v1::ListJobsResponse* response) {
+    std::int64_t before = std::numeric_limits<std::int64_t>::max();
+    const std::string& token = request->page_token();
+    if (!token.empty()) {
+        const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), before);
+        if (error != std::errc() || end != token.data() + token.size()) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("'{}' is not a page token of this server", token.substr(0, 100))};
+    }
+    if (request->page_size() < 0) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("the page size {} is negative", request->page_size())};
+    const std::int32_t size = request->page_size() == 0 ? default_page : std::min(request->page_size(), max_page);
+    const auto views = farm_.list_jobs(before, static_cast<std::size_t>(size) + 1);
+    if (!views) return to_status(views.error());
+    for (std::size_t n = 0; n < views->size() && n < static_cast<std::size_t>(size); ++n) fill((*views)[n], *response->add_jobs());
+    if (views->size() > static_cast<std::size_t>(size)) response->set_next_page_token(std::to_string((*views)[static_cast<std::size_t>(size) - 1].row.id));
+    return grpc::Status::OK;
+}
+
+grpc::Status JobsService::CancelJob(grpc::ServerContext*, const v1::CancelJobRequest* request, v1::Job* response) {
+    const auto id = job_from_name(request->name());
+    if (!id) return to_status(id.error());
+    return answer(farm_.cancel_job(*id), response);
+}
+
+grpc::Status JobsService::WatchJob(grpc::ServerContext* context, const v1::WatchJobRequest* request, grpc::ServerWriter<v1::Job>* writer) {
+    const auto id = job_from_name(request->name());
+    if (!id) return to_status(id.error());
+    struct Seat {
+        std::atomic<int>& taken;
+        int number;
+        explicit Seat(std::atomic<int>& watchers) : taken(watchers), number(++watchers) {}
+        ~Seat() { --taken; }
+    } seat(watchers_);
+    if (seat.number > max_watchers) return {grpc::StatusCode::RESOURCE_EXHAUSTED, fmt::format("{} clients are watching already", max_watchers)};
+    for (std::uint64_t seen = 0;;) {
+        const auto view = farm_.wait_for_change(*id, seen, watch_patience);
+        if (!view) return to_status(view.error());
+        if (context->IsCancelled()) return grpc::Status::CANCELLED;
+        if (stopping_) return {grpc::StatusCode::UNAVAILABLE, "the server is stopping"};
+        if (view->version == seen) continue;
+        seen = view->version;
+        v1::Job job;
+        fill(*view, job);
+        if (!writer->Write(job)) return grpc::Status::CANCELLED;
+        if (view->row.state != farm::JobState::running) return grpc::Status::OK;
+        std::this_thread::sleep_for(watch_interval);
+    }
+}
+
+}  // namespace drtv::service

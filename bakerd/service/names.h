@@ -1,0 +1,24 @@
+// Between the contract's text and the farm's values: resource names, digests, statuses.
+#pragma once
+
+#include "bakerd/farm/error.h"
+#include "bakerd/map/digest.h"
+
+#include <grpcpp/support/status.h>
+
+#include <cstdint>
+#include <string>
+
+namespace drtv::service {
+
+[[nodiscard]] grpc::Status to_status(const farm::Error& error);
+
+[[nodiscard]] std::string job_name(std::int64_t id);             // "jobs/12"
+[[nodiscard]] std::string map_name(const map::Digest& digest);  // "maps/<hex>"
+
+// invalid_argument with a sentence for anything else.
+[[nodiscard]] farm::Result<std::int64_t> job_from_name(const std::string& name);
+[[nodiscard]] farm::Result<map::Digest> map_from_name(const std::string& name);
+[[nodiscard]] farm::Result<map::Digest> digest_from_text(const std::string& hex);
+
+}  // namespace drtv::service

@@ -1,0 +1,95 @@
+#include "bakerd/service/names.h"
+#include "bakerd/service/services.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace drtv::service {
+namespace {
+
+constexpr std::int64_t default_page = 1000, max_page = 10000;
+
+v1::Sector::State to_proto(const farm::SectorView& view) {
+    if (view.running) return v1::Sector::RUNNING;
+    switch (view.task.state) {
+        case farm::TaskState::pending: return v1::Sector::PENDING;
+        case farm::TaskState::done: return v1::Sector::DONE;
+        case farm::TaskState::failed: return v1::Sector::FAILED;
+    }
+    return v1::Sector::STATE_UNSPECIFIED;
+}
+
+void fill(const farm::SectorView& view, v1::Sector& out) {
+    const farm::TaskRow& row = view.task;
+    out.mutable_coordinate()->set_i(row.sector.i);
+    out.mutable_coordinate()->set_j(row.sector.j);
+    out.set_state(to_proto(view));
+    out.set_failed_attempts(row.failed_attempts);
+    out.set_error(row.error);
+    if (row.state != farm::TaskState::done) return;
+    out.set_sha256(to_hex(row.result.result));
+    out.set_size_bytes(row.result.size_bytes);
+    out.set_probes(row.result.probes);
+    out.set_rays(row.result.rays);
+}
+
+}  // namespace
+
+grpc::Status SectorsService::ListSectors(grpc::ServerContext*, const v1::ListSectorsRequest* request, v1::ListSectorsResponse* response) {
+    const auto job = job_from_name(request->job());
+    if (!job) return to_status(job.error());
+    std::int64_t first = 0;
+    const std::string& token = request->page_token();
+    if (!token.empty()) {
+        const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), first);
+        if (error != std::errc() || end != token.data() + token.size() || first < 0) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("'{}' is not a page token of this server", token.substr(0, 100))};
+    }
+    if (request->page_size() < 0) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("the page size {} is negative", request->page_size())};
+    const std::int64_t size = request->page_size() == 0 ? default_page : std::min<std::int64_t>(request->page_size(), max_page);
+    const auto views = farm_.list_sectors(*job, first, size + 1);
+    if (!views) return to_status(views.error());
+    for (std::size_t n = 0; n < views->size() && n < static_cast<std::size_t>(size); ++n) fill((*views)[n], *response->add_sectors());
+    if (views->size() > static_cast<std::size_t>(size)) response->set_next_page_token(std::to_string(first + size));
+    return grpc::Status::OK;
+}
+
+grpc::Status SectorsService::PullSectors(grpc::ServerContext*, const v1::PullSectorsRequest* request, grpc::ServerWriter<v1::PullSectorsResponse>* writer) {
+    const auto job = job_from_name(request->job());
+    if (!job) return to_status(job.error());
+    if (request->sectors_size() == 0) {
+        for (std::int64_t first = 0;; first += default_page) {
+            const auto views = farm_.list_sectors(*job, first, default_page);
+            if (!views) return to_status(views.error());
+            for (const farm::SectorView& view : *views) {
+                if (view.task.state != farm::TaskState::done) continue;
+                if (grpc::Status status = send(view, *writer); !status.ok()) return status;
+            }
+            if (views->size() < static_cast<std::size_t>(default_page)) return grpc::Status::OK;
+        }
+    }
+    for (const v1::SectorCoordinate& coordinate : request->sectors()) {
+        const auto view = farm_.get_sector(*job, {coordinate.i(), coordinate.j()});
+        if (!view) return to_status(view.error());
+        if (view->task.state != farm::TaskState::done) return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("sector ({}, {}) is not done", coordinate.i(), coordinate.j())};
+        if (grpc::Status status = send(*view, *writer); !status.ok()) return status;
+    }
+    return grpc::Status::OK;
+}
+
+grpc::Status SectorsService::send(const farm::SectorView& view, grpc::ServerWriter<v1::PullSectorsResponse>& writer) {
+    const auto bytes = farm_.blobs().get(view.task.result.result);
+    if (!bytes) return {grpc::StatusCode::DATA_LOSS, fmt::format("sector ({}, {}): {}; submit the map again to bake it anew", view.task.sector.i, view.task.sector.j, bytes.error().message)};
+    v1::PullSectorsResponse message;
+    fill(view, *message.mutable_sector());
+    if (!writer.Write(message)) return grpc::Status::CANCELLED;
+    message.clear_sector();
+    for (std::size_t at = 0; at < bytes->size(); at += max_chunk_bytes) {
+        message.set_data(bytes->data() + at, std::min(max_chunk_bytes, bytes->size() - at));
+        if (!writer.Write(message)) return grpc::Status::CANCELLED;
+    }
+    return grpc::Status::OK;
+}
+
+}  // namespace drtv::service

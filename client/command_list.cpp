@@ -1,0 +1,70 @@
+#include "client/commands.h"
+#include "client/job_text.h"
+
+#include <fmt/format.h>
+#include <grpcpp/grpcpp.h>
+
+#include <cstdio>
+#include <ctime>
+
+namespace drtv::client {
+namespace {
+
+std::string local_time(std::int64_t unix_seconds) {
+    const std::time_t time = unix_seconds;
+    std::tm parts{};
+    char text[32] = "";
+    if (::localtime_r(&time, &parts) != nullptr) std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &parts);
+    return text;
+}
+
+int print(Connection& connection, const grpc::Status& status, const v1::Job& job) {
+    if (!status.ok()) return complain(connection.sentence(status));
+    if (connection.options.json) {
+        std::puts(json_line(job).c_str());
+        return 0;
+    }
+    std::puts(one_line(job).c_str());
+    if (!job.error().empty()) std::printf("  %s\n", job.error().c_str());
+    return 0;
+}
+
+}  // namespace
+
+int run_list(Connection& connection) {
+    if (!connection.options.json) std::printf("%5s  %-9s  %-19s  %13s  %9s  %s\n", "JOB", "STATE", "CREATED", "SECTORS", "PROBES", "PRESET");
+    v1::ListJobsRequest request;
+    for (;;) {
+        grpc::ClientContext context;
+        v1::ListJobsResponse response;
+        if (const grpc::Status status = connection.jobs->ListJobs(&context, request, &response); !status.ok()) return complain(connection.sentence(status));
+        for (const v1::Job& job : response.jobs()) {
+            if (connection.options.json) std::puts(json_line(job).c_str());
+            else
+                std::printf("%5s  %-9s  %-19s  %6lld/%6lld  %9s  %s\n", job_number(job).c_str(), state_name(job.state()).c_str(), local_time(job.create_time_seconds()).c_str(),
+                            static_cast<long long>(job.sectors_done()), static_cast<long long>(job.sectors_total()), with_thousands(job.probes()).c_str(), job.settings().preset().c_str());
+        }
+        if (response.next_page_token().empty()) return 0;
+        request.set_page_token(response.next_page_token());
+    }
+}
+
+int run_status(Connection& connection, const std::string& job) {
+    v1::GetJobRequest request;
+    request.set_name(job_resource(job));
+    grpc::ClientContext context;
+    v1::Job found;
+    const grpc::Status status = connection.jobs->GetJob(&context, request, &found);
+    return print(connection, status, found);
+}
+
+int run_cancel(Connection& connection, const std::string& job) {
+    v1::CancelJobRequest request;
+    request.set_name(job_resource(job));
+    grpc::ClientContext context;
+    v1::Job cancelled;
+    const grpc::Status status = connection.jobs->CancelJob(&context, request, &cancelled);
+    return print(connection, status, cancelled);
+}
+
+}  // namespace drtv::client

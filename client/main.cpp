@@ -1,0 +1,51 @@
+// bake: parse, connect, run.
+#include "client/commands.h"
+
+#include <CLI/CLI.hpp>
+
+int main(int argc, char** argv) {
+    using namespace drtv::client;
+    CLI::App app{"bake submits maps to bakerd and pulls the baked sector files."};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "bake 0.1.0");
+
+    ConnectionOptions options;
+    app.add_option("--server", options.server, "Address of bakerd")->envname("DRTV_SERVER")->capture_default_str();
+    app.add_flag("--json", options.json, "Print JSON, one object a line");
+    app.add_option("--tls-ca", options.tls_ca, "Authority that signs the server's certificate (PEM)");
+    app.add_option("--tls-cert", options.tls_certificate, "This client's certificate (PEM)");
+    app.add_option("--tls-key", options.tls_key, "Its key (PEM)");
+
+    SubmitOptions submit;
+    CLI::App* submit_command = app.add_subcommand("submit", "Upload a map and bake it");
+    submit_command->add_option("MAP", submit.maps, "glTF files (.gltf, .glb), or folders of them")->required();
+    submit_command->add_option("--region", submit.region, "X0,Y0,X1,Y1 in world metres: only the sectors it touches");
+    submit_command->add_option("--preset", submit.preset, "draft, console or pc")->capture_default_str();
+    submit_command->add_option("--set", submit.settings, "key=value: rays, bounces, reach (m), min_distance (m)")->allow_extra_args(false);
+    submit_command->add_flag("--wait", submit.wait, "Show progress until the job ends");
+    submit_command->add_option("--pull", submit.pull_folder, "Wait, then write the sector files to this folder");
+
+    std::string job, folder;
+    app.add_subcommand("list", "All jobs, newest first");
+    CLI::App* status_command = app.add_subcommand("status", "One job, now");
+    CLI::App* watch_command = app.add_subcommand("watch", "Show a job's progress until it ends");
+    CLI::App* cancel_command = app.add_subcommand("cancel", "Stop a job; what is done stays");
+    CLI::App* pull_command = app.add_subcommand("pull", "Write a job's finished sector files to a folder");
+    for (CLI::App* command : {status_command, watch_command, cancel_command, pull_command}) command->add_option("JOB", job, "Number of the job")->required();
+    pull_command->add_option("--out", folder, "Folder for the files; made when missing")->required();
+    for (CLI::App* command : app.get_subcommands({})) command->fallthrough();
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    auto connection = connect(options);
+    if (!connection) return complain(connection.error());
+    if (*submit_command) return run_submit(*connection, submit);
+    if (*status_command) return run_status(*connection, job);
+    if (*watch_command) return run_watch(*connection, job);
+    if (*cancel_command) return run_cancel(*connection, job);
+    if (*pull_command) return run_pull(*connection, job, folder);
+    return run_list(*connection);
+}

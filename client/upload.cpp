@@ -1,0 +1,122 @@
+#include "client/commands.h"
+#include "client/job_text.h"
+#include "client/map_files.h"
+#include "client/progress.h"
+
+#include <fmt/format.h>
+#include <grpcpp/grpcpp.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <thread>
+
+namespace drtv::client {
+namespace {
+
+constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
+// Another client may be uploading the same blob, or the line may break: the rest is tried again.
+constexpr int upload_attempts = 20;
+constexpr std::chrono::milliseconds upload_pause{500};
+
+struct Transfer {
+    std::int64_t sent = 0, total = 0;
+    Progress progress;
+
+    void show() { progress.show(total == 0 ? 1 : static_cast<double>(sent) / static_cast<double>(total), fmt::format("uploading {:.1f} of {:.1f} MB", static_cast<double>(sent) * 1e-6, static_cast<double>(total) * 1e-6)); }
+};
+
+tl::expected<v1::FindMissingBlobsResponse, std::string> find_missing(Connection& connection, const std::vector<const LocalFile*>& files) {
+    v1::FindMissingBlobsRequest request;
+    for (const LocalFile* file : files) {
+        v1::Blob* blob = request.add_blobs();
+        blob->set_sha256(file->sha256);
+        blob->set_size_bytes(file->size_bytes);
+    }
+    grpc::ClientContext context;
+    v1::FindMissingBlobsResponse response;
+    const grpc::Status status = connection.blobs->FindMissingBlobs(&context, request, &response);
+    if (!status.ok()) return tl::unexpected(connection.sentence(status));
+    return response;
+}
+
+grpc::Status send_blob(Connection& connection, const LocalFile& file, std::int64_t offset, Transfer& transfer) {
+    std::ifstream input(file.disk_path, std::ios::binary);
+    input.seekg(offset);
+    if (!input) return {grpc::StatusCode::NOT_FOUND, fmt::format("cannot read {}: {}", file.disk_path, std::strerror(errno))};
+    grpc::ClientContext context;
+    v1::UploadBlobResponse response;
+    const auto writer = connection.blobs->UploadBlob(&context, &response);
+    v1::UploadBlobRequest request;
+    request.mutable_blob()->set_sha256(file.sha256);
+    request.mutable_blob()->set_size_bytes(file.size_bytes);
+    request.set_offset(offset);
+    std::string buffer(chunk_bytes, '\0');
+    bool first = true;
+    while (input.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || input.gcount() > 0 || first) {
+        request.set_data(buffer.data(), static_cast<std::size_t>(input.gcount()));
+        if (!writer->Write(request)) break;  // Finish says why
+        transfer.sent += input.gcount();
+        transfer.show();
+        request.clear_blob();
+        request.clear_offset();
+        first = false;
+    }
+    writer->WritesDone();
+    return writer->Finish();
+}
+
+tl::expected<void, std::string> upload_file(Connection& connection, const LocalFile& file, Transfer& transfer) {
+    const std::int64_t sent_before = transfer.sent;
+    grpc::Status status;
+    for (int attempt = 0; attempt < upload_attempts && !interrupted(); ++attempt) {
+        if (attempt > 0) std::this_thread::sleep_for(upload_pause);
+        const auto missing = find_missing(connection, {&file});
+        if (!missing) return tl::unexpected(missing.error());
+        if (missing->missing_size() == 0) {
+            transfer.sent = sent_before + file.size_bytes;
+            return {};
+        }
+        const std::int64_t offset = missing->missing(0).received_bytes() <= file.size_bytes ? missing->missing(0).received_bytes() : 0;
+        transfer.sent = sent_before + offset;
+        status = send_blob(connection, file, offset, transfer);
+        if (status.ok()) return {};
+        const bool passing = status.error_code() == grpc::StatusCode::ABORTED || status.error_code() == grpc::StatusCode::UNAVAILABLE;
+        if (!passing) break;
+    }
+    if (interrupted()) return tl::unexpected(std::string("interrupted; what was uploaded stays with the server"));
+    return tl::unexpected(fmt::format("cannot upload {}: {}", file.disk_path, connection.sentence(status)));
+}
+
+}  // namespace
+
+tl::expected<v1::Map, std::string> upload_map(Connection& connection, const LocalMap& map) {
+    std::vector<const LocalFile*> all;
+    for (const LocalFile& file : map.files) all.push_back(&file);
+    const auto missing = find_missing(connection, all);
+    if (!missing) return tl::unexpected(missing.error());
+    {
+        Transfer transfer;
+        for (const auto& m : missing->missing()) transfer.total += m.blob().size_bytes();
+        for (const auto& m : missing->missing()) {
+            const auto file = std::find_if(map.files.begin(), map.files.end(), [&](const LocalFile& f) { return f.sha256 == m.blob().sha256(); });
+            if (auto uploaded = upload_file(connection, *file, transfer); !uploaded) return tl::unexpected(uploaded.error());
+        }
+    }
+    v1::CreateMapRequest request;
+    for (const LocalFile& file : map.files) {
+        v1::MapFile* f = request.mutable_map()->add_files();
+        f->set_path(file.map_path);
+        f->set_sha256(file.sha256);
+        f->set_size_bytes(file.size_bytes);
+    }
+    for (const std::string& root : map.roots) request.mutable_map()->add_roots(root);
+    grpc::ClientContext context;
+    v1::Map created;
+    const grpc::Status status = connection.maps->CreateMap(&context, request, &created);
+    if (!status.ok()) return tl::unexpected(connection.sentence(status));
+    return created;
+}
+
+}  // namespace drtv::client
