@@ -29,14 +29,18 @@ BasisWeights basis_weights(const glm::vec3& w) {
 // The share of a cosine lobe around the basis direction that lies above the horizon.
 double upper_share(std::size_t b) { return (1 + static_cast<double>(transfer_basis[b][2])) / 2; }
 
-// A start for the next ray, on the same side of all surfaces as the way that led here: a little back along that
-// way, which is known to be free, and a little off the surface. In units of the coordinates' own precision.
-glm::vec3 leave_surface(const trace::Ray& ray, const trace::Hit& hit) {
+// A start for the next ray, certainly on the same side of every surface as the way that led here: a point of that
+// way, which is known to be free, where it is still clear of the surface by the coordinates' rounding. Where the
+// whole way runs closer to the surface than that (in the last micrometres of a crevice) there is no such point,
+// and the path ends: better a path lost than light through a wall.
+std::optional<glm::vec3> leave_surface(const trace::Ray& ray, const trace::Hit& hit) {
     const glm::vec3 point = ray.origin + ray.direction * hit.distance_m;
     const float magnitude = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), 1.0f});
-    const float step = magnitude * 0x1p-18f;
-    const float back = std::min(step, hit.distance_m * 0.5f);
-    return point - ray.direction * back + hit.normal * back;
+    const float clearance = magnitude * 0x1p-20f;  // 8 to 16 times the coordinates' last digit
+    const float cosine = -glm::dot(ray.direction, hit.normal);
+    const float back = clearance / cosine;
+    if (!(back <= hit.distance_m / 2)) return std::nullopt;
+    return ray.origin + ray.direction * (hit.distance_m - back);
 }
 
 // Where a ray leaves the sphere of what the probe can see; 0 when it starts outside.
@@ -82,8 +86,10 @@ class Integrator {
                 ++light_.back_hits;
                 return;
             }
+            const std::optional<glm::vec3> start = leave_surface(ray, *hit);
+            if (!start) return;
             throughput *= surface.albedo;
-            ray.origin = leave_surface(ray, *hit);
+            ray.origin = *start;
             ray.direction = cosine_hemisphere(sample(point, 2 + 2 * std::size_t{bounce}), hit->normal);
             ray.far_m = exit_distance(ray, probe_, settings_.reach_m);
         }

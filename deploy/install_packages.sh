@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Installs from Debian 12 what drtv needs to build, test and run. Idempotent; asks nothing. `--tests` adds what
+# only the tests need.
+set -euo pipefail
+
+packages=(
+  build-essential ca-certificates ccache cmake git ninja-build pkg-config python3
+  libcgal-dev libcli11-dev libembree-dev libexpected-dev libfmt-dev libglm-dev libgrpc++-dev libprotobuf-dev
+  libspdlog-dev libsqlite3-dev libssl-dev libstb-dev libtbb-dev libtinygltf-dev libzstd-dev nlohmann-json3-dev
+  protobuf-compiler protobuf-compiler-grpc
+)
+if [[ "${1:-}" == "--tests" ]]; then
+  packages+=(libbenchmark-dev libgmock-dev libgtest-dev libxxhash-dev util-linux)
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null)" == installed ]] || missing+=("$package")
+done
+if [[ ${#missing[@]} -eq 0 ]]; then
+  exit 0
+fi
+
+sudo=()
+if [[ $(id -u) -ne 0 ]]; then
+  sudo=(sudo)
+fi
+echo "installing ${#missing[@]} packages: ${missing[*]}" >&2
+export DEBIAN_FRONTEND=noninteractive
+"${sudo[@]}" apt-get update -q
+"${sudo[@]}" apt-get install -q -y --no-install-recommends "${missing[@]}"

@@ -1,0 +1,421 @@
+#!/usr/bin/env python3
+"""End to end with the real daemon, worker and client: e2e_test.py --bin DIR --data SHARED_DATA CASE"""
+import argparse
+import csv
+import json
+import os
+import signal
+import sys
+import time
+import unittest
+
+import farm_fixture
+from farm_fixture import Farm, make_island, read_folder, tiny_disk, wait_until
+
+OPTIONS = argparse.Namespace(bin="", data="")
+# 36 sectors around the crater and the inland village: ground, jungle, huts, manual probes, the no_probes box.
+REGION = ["--region", "-130,-190,250,120"]
+FEW_RAYS = ["--preset", "draft", "--set", "rays=64"]
+
+
+def world_translation(nodes, number):
+    """glTF position of a node's origin, through parents with translations and rotations."""
+    point = (0.0, 0.0, 0.0)
+    while number is not None:
+        node = nodes[number]
+        qx, qy, qz, qw = node.get("rotation", (0, 0, 0, 1))
+        px, py, pz = (a * b for a, b in zip(point, node.get("scale", (1, 1, 1))))
+        tx, ty, tz = 2 * (qy * pz - qz * py), 2 * (qz * px - qx * pz), 2 * (qx * py - qy * px)
+        turned = (px + qw * tx + qy * tz - qz * ty, py + qw * ty + qz * tx - qx * tz, pz + qw * tz + qx * ty - qy * tx)
+        point = tuple(a + b for a, b in zip(turned, node.get("translation", (0, 0, 0))))
+        number = next((n for n, parent in enumerate(nodes) if number in parent.get("children", [])), None)
+    return point
+
+
+def has_ended(pid):
+    try:
+        with open(f"/proc/{pid}/stat", encoding="utf-8") as file:
+            return file.read().split()[2] == "Z"
+    except FileNotFoundError:
+        return True
+
+
+class FarmTest(unittest.TestCase):
+    def setUp(self):
+        self.farm = Farm(OPTIONS.bin)
+        self.addCleanup(self.farm.close)
+
+    def island(self, plants=700):
+        return make_island(self.farm.path("map"), plants)
+
+    def pulled(self, daemon, *arguments, name="pulled"):
+        """Submits, waits, pulls; gives the files."""
+        folder = self.farm.path(name)
+        done = self.farm.bake(daemon, "submit", *arguments, "--pull", folder)
+        self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+        return read_folder(folder)
+
+    def assert_sentence(self, done, *parts, status=None):
+        """Failed, with one line on standard error that holds the parts."""
+        if status is None:
+            self.assertNotEqual(done.returncode, 0, done.stdout)
+        else:
+            self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+
+class Baking(FarmTest):
+    def test_region_is_baked_pulled_valid_and_pictured(self):
+        daemon = self.farm.daemon()
+        island = self.island()
+        files = self.pulled(daemon, island, *REGION, *FEW_RAYS)
+        self.assertEqual(len(files), 35)
+        validated = self.farm.run("drtv", "validate", self.farm.path("pulled"), "--json")
+        self.assertEqual(validated.returncode, 0, validated.stdout)
+        picture = self.farm.path("map.png")
+        self.assertEqual(self.farm.run("drtv", "preview", self.farm.path("pulled"), "--out", picture).returncode, 0)
+        with open(picture, "rb") as file:
+            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+
+    def test_manual_probe_stands_where_the_artist_put_it(self):
+        daemon = self.farm.daemon()
+        island = self.island()
+        with open(island, encoding="utf-8") as file:
+            nodes = json.load(file)["nodes"]
+        probe = next(n for n, node in enumerate(nodes) if node.get("extras", {}).get("bake_role") == "probe" and "inland" in node["name"])
+        x, y, z = world_translation(nodes, probe)
+        self.pulled(daemon, island, "--region", f"{x},{-z},{x},{-z}", *FEW_RAYS)
+        (name,) = os.listdir(self.farm.path("pulled"))
+        dump = json.loads(self.farm.run("drtv", "dump", os.path.join(self.farm.path("pulled"), name), "--json").stdout)
+        manual = [p["position"] for p in dump["probes"] if p["kind"] == "manual"]
+        half_unit_m = 0.5 / 1024
+        self.assertTrue(any(all(abs(a - b) <= half_unit_m for a, b in zip(position, (x, -z, y))) for position in manual), (manual, (x, -z, y)))
+
+    def test_resubmitting_finds_every_sector_in_the_cache(self):
+        daemon = self.farm.daemon()
+        island = self.island(100)
+        first = self.pulled(daemon, island, *REGION, *FEW_RAYS)
+        again = self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS)
+        job = json.loads(again.stdout)
+        self.assertEqual((job["state"], job["sectors_cached"], job["sectors_total"]), ("succeeded", len(first), len(first)))
+
+    def test_renamed_and_reordered_map_is_the_same_map(self):
+        daemon = self.farm.daemon()
+        island = self.island(100)
+        self.pulled(daemon, island, *REGION, *FEW_RAYS)
+        with open(island, encoding="utf-8") as file:
+            document = json.load(file)
+        probes = {volume["extras"]["bake_probe"] for volume in document["nodes"] if "bake_probe" in volume.get("extras", {})}
+        for number, node in enumerate(document["nodes"]):
+            if node.get("name") not in probes:
+                node["name"] = f"renamed {number}"
+        document["scenes"][document.get("scene", 0)]["nodes"].reverse()
+        with open(island, "w", encoding="utf-8") as file:
+            json.dump(document, file)
+        job = json.loads(self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS).stdout)
+        self.assertEqual(job["sectors_cached"], job["sectors_total"])
+
+
+class Determinism(FarmTest):
+    def test_threads_daemons_and_sector_order_do_not_matter(self):
+        island = self.island()
+        one = self.farm.daemon("one", "--threads", "1")
+        whole = self.pulled(one, island, *REGION, *FEW_RAYS, name="whole")
+        two = self.farm.daemon("two", "--threads", "2")
+        # The same sectors in another order: first some strips from the north, then all.
+        for y in (100, -60, 20):
+            strip = self.farm.bake(two, "submit", island, "--region", f"-130,{y},250,{y}", *FEW_RAYS, "--wait")
+            self.assertEqual(strip.returncode, 0, strip.stderr)
+        parts = self.pulled(two, island, *REGION, *FEW_RAYS, name="parts")
+        self.assertEqual(sorted(whole), sorted(parts))
+        self.assertEqual([name for name in whole if whole[name] != parts[name]], [])
+
+    def test_what_lies_beyond_the_reach_changes_no_byte(self):
+        island = self.island()
+        daemon = self.farm.daemon()
+        near = ["--region", "0,0,60,60", *FEW_RAYS, "--set", "reach=100"]
+        before = self.pulled(daemon, island, *near, name="before")
+        with open(island, encoding="utf-8") as file:
+            document = json.load(file)
+        rock = next(n for n in document["nodes"] if "mesh" in n and n.get("name", "").startswith("rock"))
+        document["nodes"].append({"mesh": rock["mesh"], "translation": [400.0, 60.0, 0.0]})
+        document["scenes"][document.get("scene", 0)]["nodes"].append(len(document["nodes"]) - 1)
+        with open(island, "w", encoding="utf-8") as file:
+            json.dump(document, file)
+        after = self.pulled(daemon, island, *near, name="after")
+        self.assertEqual(before, after)
+
+
+class Crashes(FarmTest):
+    def test_killed_workers_and_daemon_lose_nothing(self):
+        island = self.island()
+        calm = self.farm.daemon("calm")
+        expected = self.pulled(calm, island, *REGION, *FEW_RAYS, name="expected")
+        daemon = self.farm.daemon("stormy")
+        submitted = json.loads(self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS).stdout)
+        self.assertEqual(submitted["state"], "running")
+
+        def done():
+            return self.farm.job(daemon, 1)["sectors_done"]
+
+        wait_until(lambda: done() >= 2, what="the first sectors")
+        first_worker = daemon.worker_pid()
+        os.kill(first_worker, signal.SIGKILL)
+        wait_until(lambda: daemon.worker_pid() != first_worker, what="a new worker")
+        wait_until(lambda: done() >= 5, what="sectors after the worker's death")
+        worker = daemon.worker_pid()
+        daemon.kill()
+        wait_until(lambda: has_ended(worker), what="the worker's end with its daemon")
+        daemon.start()
+        watched = self.farm.bake(daemon, "watch", "1")
+        self.assertEqual(watched.returncode, 0, watched.stderr)
+        pulled = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("stormy_files"))
+        self.assertEqual(pulled.returncode, 0, pulled.stderr)
+        self.assertEqual(expected, read_folder(self.farm.path("stormy_files")))
+
+    def test_client_follows_its_job_through_a_restart(self):
+        island = self.island()
+        daemon = self.farm.daemon()
+        client = self.farm.start_bake(daemon, "submit", island, *REGION, *FEW_RAYS, "--wait")
+        wait_until(lambda: "job 1:" in daemon.log() and self.farm.job(daemon, 1)["sectors_done"] >= 1, what="the first sector")
+        daemon.kill()
+        time.sleep(0.3)
+        daemon.start()
+        out, err = client.communicate(timeout=120)
+        self.assertEqual(client.returncode, 0, err)
+        self.assertIn("succeeded: 35 of 35", out)
+
+    def test_damaged_result_is_baked_again(self):
+        island = self.island(100)
+        daemon = self.farm.daemon()
+        region = ["--region", "0,0,1,1", *FEW_RAYS]
+        first = self.pulled(daemon, island, *region, name="first")
+        (content,) = first.values()
+        damaged = 0
+        for folder, _, names in os.walk(self.farm.path("data/blobs/objects")):
+            for name in names:
+                with open(os.path.join(folder, name), "r+b") as blob:
+                    if blob.read() == content:
+                        blob.seek(100)
+                        blob.write(b"\xff\xff")
+                        damaged += 1
+        self.assertEqual(damaged, 1)
+        refused = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("second"))
+        self.assert_sentence(refused, "damaged", "submit the map again")
+        self.assertEqual(os.listdir(self.farm.path("second")), [])
+        self.assertEqual(self.pulled(daemon, island, *region, name="third"), first)
+
+
+class Client(FarmTest):
+    def test_wrong_requests_get_one_sentence_each(self):
+        daemon = self.farm.daemon()
+        island = self.island(10)
+        empty = self.farm.path("empty")
+        os.mkdir(empty)
+        cases = [
+            (["submit", "/nowhere/map.glb"], ["/nowhere/map.glb", "does not exist"]),
+            (["submit", empty], ["holds no .glb or .gltf file"]),
+            (["submit", island, "--preset", "ultra"], ["'ultra'", "draft, console and pc"]),
+            (["submit", island, "--set", "rays=none"], ["rays", "'none'"]),
+            (["submit", island, "--set", "rays=8"], ["16 to 65536"]),
+            (["submit", island, "--set", "shadows=1"], ["'shadows' is unknown"]),
+            (["submit", island, "--set", "rays"], ["key=value"]),
+            (["submit", island, "--region", "1,2,3"], ["X0,Y0,X1,Y1"]),
+            (["submit", island, "--region", "9,0,1,1"], ["is empty"]),
+            (["submit", island, "--region", "nan,0,1,1"], ["not a number of metres"]),
+            (["submit", island, "--region", "9000,9000,9001,9001"], ["touches no sector with ground"]),
+            (["status", "7"], ["there is no job 7"]),
+            (["watch", "seven"], ["'jobs/seven' is not the name of a job"]),
+            (["cancel", "7"], ["there is no job 7"]),
+            (["pull", "7", "--out", self.farm.path("out")], ["there is no job 7"]),
+        ]
+        for arguments, parts in cases:
+            with self.subTest(arguments=arguments):
+                self.assert_sentence(self.farm.bake(daemon, *arguments), *parts)
+        self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
+
+    def test_absent_daemon_is_told(self):
+        self.assert_sentence(self.farm.run("bake", "--server", "127.0.0.1:1", "list"), "cannot reach bakerd at 127.0.0.1:1")
+
+    def test_interrupted_client_leaves_the_job_running(self):
+        daemon = self.farm.daemon()
+        client = self.farm.start_bake(daemon, "submit", self.island(), *REGION, *FEW_RAYS, "--wait")
+        wait_until(lambda: "job 1:" in daemon.log(), what="the job")
+        time.sleep(0.2)
+        client.send_signal(signal.SIGINT)
+        _, err = client.communicate(timeout=20)
+        self.assertEqual(client.returncode, 130, err)
+        self.assertIn("come back with: bake watch 1", err)
+        watched = self.farm.bake(daemon, "watch", "1")
+        self.assertEqual(watched.returncode, 0, watched.stderr)
+        self.assertIn("job 1 succeeded", watched.stdout)
+
+    def test_cancelled_job_ends_and_keeps_what_is_done(self):
+        daemon = self.farm.daemon()
+        self.farm.bake(daemon, "submit", self.island(), *REGION, "--set", "rays=1024")
+        wait_until(lambda: self.farm.job(daemon, 1)["sectors_done"] >= 1, what="the first sector")
+        self.assertEqual(self.farm.bake(daemon, "cancel", "1").returncode, 0)
+        job = self.farm.job(daemon, 1)
+        self.assertEqual(job["state"], "cancelled")
+        self.assertLess(job["sectors_done"], job["sectors_total"])
+        pulled = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("some"))
+        self.assertEqual(pulled.returncode, 0, pulled.stderr)
+        self.assertGreaterEqual(len(os.listdir(self.farm.path("some"))), 1)
+        self.assertEqual(self.farm.bake(daemon, "watch", "1").returncode, 1)
+
+    def test_json_is_one_object_a_line(self):
+        daemon = self.farm.daemon()
+        done = self.farm.bake(daemon, "--json", "submit", self.island(10), "--region", "0,0,1,1", *FEW_RAYS, "--pull", self.farm.path("out"))
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertEqual(lines[-2]["state"], "succeeded")
+        self.assertEqual(lines[-1]["pulled"], 1)
+        self.assertEqual(json.loads(self.farm.bake(daemon, "--json", "list").stdout)["job"], "1")
+
+    def test_pull_mends_what_is_missing_or_wrong(self):
+        daemon = self.farm.daemon()
+        files = self.pulled(daemon, self.island(10), "--region", "0,0,100,1", *FEW_RAYS)
+        names = sorted(files)
+        os.remove(os.path.join(self.farm.path("pulled"), names[0]))
+        with open(os.path.join(self.farm.path("pulled"), names[1]), "ab") as file:
+            file.write(b"x")
+        again = json.loads(self.farm.bake(daemon, "--json", "pull", "1", "--out", self.farm.path("pulled")).stdout)
+        self.assertEqual((again["pulled"], again["unchanged"]), (2, len(names) - 2))
+        self.assertEqual(read_folder(self.farm.path("pulled")), files)
+
+    @unittest.skipUnless(os.geteuid() == 0, "needs root to make a small disk")
+    def test_full_disk_of_the_client_is_told_and_leaves_no_half_file(self):
+        daemon = self.farm.daemon()
+        island = self.island(10)
+        disk = self.farm.path("disk")
+        with tiny_disk(disk, 65536):
+            done = self.farm.bake(daemon, "submit", island, "--region", "0,0,400,1", *FEW_RAYS, "--pull", disk)
+            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertIn("No space left on device", done.stderr)
+            for name in os.listdir(disk):
+                self.assertTrue(name.endswith(".drtv"), name)
+                self.assertEqual(self.farm.run("drtv", "validate", os.path.join(disk, name)).returncode, 0)
+
+
+class Daemon(FarmTest):
+    def test_taken_port_taken_folder_and_unwritable_folder_are_told(self):
+        daemon = self.farm.daemon()
+        port = self.farm.run("bakerd", "serve", "--data", self.farm.path("other"), "--listen", daemon.address, timeout=20)
+        self.assertEqual(port.returncode, 1)
+        self.assertIn(f"cannot listen on {daemon.address}: the port is in use", port.stderr.splitlines()[-1])
+        folder = self.farm.run("bakerd", "serve", "--data", self.farm.path("data"), "--listen", "127.0.0.1:0", timeout=20)
+        self.assert_sentence(folder, "in use by another bakerd", str(daemon.process.pid), status=1)
+        unwritable = self.farm.run("bakerd", "serve", "--data", "/proc/drtv", "--listen", "127.0.0.1:0", timeout=20)
+        self.assert_sentence(unwritable, "/proc/drtv", status=1)
+
+    def test_wrong_arguments_are_told(self):
+        for arguments, part in ((["serve"], "--data"), (["serve", "--data", "x", "--executor", "cloud"], "cloud"), (["serve", "--data", "x", "--threads", "-1"], "-1"), (["fly"], "subcommand")):
+            with self.subTest(arguments=arguments):
+                done = self.farm.run("bakerd", *arguments, timeout=20)
+                self.assertNotEqual(done.returncode, 0)
+                self.assertIn(part, done.stderr + done.stdout)
+
+    def test_terminated_daemon_stops_cleanly_and_goes_on_later(self):
+        daemon = self.farm.daemon()
+        self.farm.bake(daemon, "submit", self.island(), *REGION, *FEW_RAYS)
+        wait_until(lambda: self.farm.job(daemon, 1)["sectors_done"] >= 1, what="the first sector")
+        self.assertEqual(daemon.stop(), 0)
+        self.assertIn("stopped", daemon.log())
+        daemon.start()
+        self.assertEqual(self.farm.bake(daemon, "watch", "1").returncode, 0)
+
+    @unittest.skipUnless(os.geteuid() == 0, "needs root to make a small disk")
+    def test_full_disk_fails_the_upload_with_a_sentence(self):
+        island = self.island(700)
+        os.mkdir(self.farm.path("disk"))
+        with tiny_disk(self.farm.path("disk"), 600 * 1024):
+            daemon = farm_fixture.Daemon(OPTIONS.bin, self.farm.path("disk/data"))
+            try:
+                done = self.farm.bake(daemon, "submit", island)
+                self.assert_sentence(done, "No space left on device", status=1)
+                self.assertEqual(self.farm.bake(daemon, "list").returncode, 0)
+            finally:
+                daemon.kill()
+
+    def test_refused_map_leaves_no_job(self):
+        daemon = self.farm.daemon()
+        broken = self.farm.path("broken.gltf")
+        with open(broken, "w", encoding="utf-8") as file:
+            file.write('{"asset": {"version": "2.0"}, "nodes": [{"mesh": 3}], "scenes": [{"nodes": [0]}]}')
+        self.assert_sentence(self.farm.bake(daemon, "submit", broken), "broken.gltf", "node 0", "mesh")
+        with open(broken, "w", encoding="utf-8") as file:
+            file.write('{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 3, "uri": "../secret.bin"}]}')
+        self.assert_sentence(self.farm.bake(daemon, "submit", broken), "leaves the map's folder")
+        self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
+
+
+class RealMaps(FarmTest):
+    """Every valid map of the shared data bakes; every invalid one is refused in a sentence."""
+
+    def setUp(self):
+        if not os.path.isdir(OPTIONS.data):
+            self.skipTest(f"no maps at {OPTIONS.data}")
+        super().setUp()
+        self.daemon = self.farm.daemon()
+
+    def documents(self, folder):
+        found = []
+        for path, _, names in os.walk(os.path.join(OPTIONS.data, folder)):
+            found += [os.path.join(path, name) for name in sorted(names) if name.endswith((".glb", ".gltf"))]
+        return sorted(found)
+
+    def assert_bakes(self, path, *settings):
+        done = self.farm.bake(self.daemon, "--json", "submit", path, "--preset", "draft", "--set", "rays=16", *settings, "--wait")
+        self.assertEqual(done.returncode, 0, path + ": " + done.stderr)
+        return json.loads(done.stdout.splitlines()[-1])
+
+    def test_models_and_scenes_bake(self):
+        for folder in ("A1_maunga_whau", "B_kenney_nature", "B_kenney_pirate", "B_kenney_watercraft", "B_polyhaven_dutch_ship", "B_polyhaven_fern",
+                       "B_quaternius_nature", "B_quaternius_props", "C_cornell", "C_zdm2", "M_desert"):
+            for path in self.documents(folder):
+                with self.subTest(path=path):
+                    self.assert_bakes(path)
+
+    def test_sponza_bakes_and_has_probes(self):
+        (path,) = self.documents("C_sponza")
+        self.assertGreater(self.assert_bakes(path)["probes"], 10)
+
+    def test_larger_elevation_model_bakes(self):
+        """Twenty square kilometres of it; the whole is a soak (CONTRIBUTING)."""
+        for path in self.documents("A2_tutuila"):
+            with self.subTest(path=path):
+                done = self.farm.bake(self.daemon, "--json", "submit", path, "--preset", "draft", "--set", "rays=16", "--region", "0,-500,500,-1", "--wait")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertGreater(json.loads(done.stdout.splitlines()[-1])["probes"], 500)
+
+    def test_importer_corpus(self):
+        with open(os.path.join(OPTIONS.data, "E_importer/manifest.csv"), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        unsupported = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness")
+        for row in rows:
+            kind, path = row["file"].split("/")[0], os.path.join(OPTIONS.data, "E_importer", row["file"])
+            if kind not in ("valid", "invalid"):
+                continue
+            with self.subTest(file=row["file"]):
+                done = self.farm.bake(self.daemon, "submit", path, "--preset", "draft", "--set", "rays=16", "--wait")
+                if kind == "valid" and done.returncode == 0:
+                    continue
+                self.assert_sentence(done, os.path.basename(path), status=1)
+                if kind == "valid":
+                    self.assertTrue(any(f"requires the extension {name}" in done.stderr for name in unsupported), done.stderr)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--bin", required=True)
+    parser.add_argument("--data", default="")
+    parser.add_argument("case", nargs="*")
+    OPTIONS.__dict__.update(vars(parser.parse_args()))
+    program = unittest.main(argv=[sys.argv[0], "--verbose", *OPTIONS.case], exit=False)
+    if not program.result.wasSuccessful():
+        sys.exit(1)
+    sys.exit(77 if program.result.skipped and len(program.result.skipped) == program.result.testsRun else 0)
+
+
+main()

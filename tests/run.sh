@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Fresh Debian 12 -> packages, build, every test. Warnings are errors. Ends with CTest's summary.
+#   tests/run.sh            what CI runs
+#   tests/run.sh --asan     the same under the address and undefined-behaviour sanitizers
+#   tests/run.sh --tsan     the same under the thread sanitizer
+set -euo pipefail
+
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+preset=ci
+case ${1:-} in
+  "") ;;
+  --asan) preset=asan ;;
+  --tsan) preset=tsan ;;
+  *) echo "run.sh: unknown option $1" >&2; exit 2 ;;
+esac
+
+"$source_dir/deploy/install_packages.sh" --tests
+cd "$source_dir"
+cmake --preset "$preset"
+cmake --build --preset "$preset"
+ctest --preset "$preset" --parallel "$(nproc)"
