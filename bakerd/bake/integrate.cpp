@@ -52,8 +52,8 @@ float exit_distance(const trace::Ray& ray, const glm::vec3& centre, float radius
 
 class Integrator {
   public:
-    Integrator(const trace::Scene& scene, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings)
-        : scene_(scene), samples_(samples), settings_(settings), probe_(glm::vec3(position_units) * position_unit_m), shift_(digital_shift(position_units)) {}
+    Integrator(const trace::Scene& scene, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings, std::vector<trace::Ray>* shot)
+        : scene_(scene), samples_(samples), settings_(settings), shot_(shot), probe_(glm::vec3(position_units) * position_unit_m), shift_(digital_shift(position_units)) {}
 
     ProbeLight run() {
         for (std::uint32_t n = 0; n < samples_.count(); ++n) trace_path(samples_.point(n));
@@ -74,6 +74,7 @@ class Integrator {
         glm::vec3 throughput(1);
         for (std::uint32_t bounce = 0;; ++bounce) {
             ++light_.rays;
+            if (shot_ != nullptr) shot_->push_back(ray);
             const std::optional<trace::Hit> hit = scene_.closest(ray);
             if (!hit) {
                 if (bounce == 0) add_sky(weights, half);
@@ -128,6 +129,7 @@ class Integrator {
     const trace::Scene& scene_;
     const SampleTable& samples_;
     const IntegrationSettings& settings_;
+    std::vector<trace::Ray>* const shot_;
     const glm::vec3 probe_;
     const std::array<std::uint32_t, max_sample_dimensions> shift_;
 
@@ -139,8 +141,8 @@ class Integrator {
 
 }  // namespace
 
-ProbeLight integrate_probe(const trace::Scene& scene, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings) {
-    return Integrator(scene, position_units, samples, settings).run();
+ProbeLight integrate_probe(const trace::Scene& scene, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings, std::vector<trace::Ray>* shot) {
+    return Integrator(scene, position_units, samples, settings, shot).run();
 }
 
 }  // namespace drtv::bake

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace drtv::bake {
 
@@ -25,7 +26,9 @@ struct IntegrationSettings {
 };
 
 // A pure function of the triangles within reach and the arguments. `samples` has at least 2 + 2 bounces
-// dimensions. REQUIRES: a FloatMode on this thread.
-[[nodiscard]] ProbeLight integrate_probe(const trace::Scene& scene, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings);
+// dimensions. With `shot`, the rays are appended to it in their order, so that others can be measured on the same
+// ones. REQUIRES: a FloatMode on this thread.
+[[nodiscard]] ProbeLight integrate_probe(const trace::Scene& scene, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings,
+                                         std::vector<trace::Ray>* shot = nullptr);
 
 }  // namespace drtv::bake

@@ -84,6 +84,10 @@ int run_preview(Arguments arguments) {
         probe_count += sector.probes.size();
         sectors.push_back(std::move(sector));
     }
+    if (const std::size_t covered = covered_sectors(sectors); covered > max_covered_sectors) {
+        complain("the sectors lie too far apart for one picture: the rectangle around them has " + std::to_string(covered) + " sectors, the limit is " + std::to_string(max_covered_sectors));
+        return exit_usage;
+    }
     const Image image = draw_region(sectors, parsed.picture);
     if (!write_file(parsed.out, encode_png(image), error)) {
         complain(error);

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double spacing_m = 8;          // typical distance between probes, the width of a bucket
 constexpr double background_reach_m = 12;  // a pixel farther than this from every probe stays empty
+constexpr double dot_radius_m = 2.1;
+constexpr float exposure = 1.5f;         // of relit colours, so that an open slope at noon is bright but not white
 constexpr Float3 empty_colour = {0.012f, 0.014f, 0.02f};
 
 struct Dot {
@@ -77,11 +79,11 @@ class Buckets {
     std::vector<std::vector<const Dot*>> buckets_;
 };
 
-// Clear sky at noon and a high sun, in units in which the sky's radiance is about one half.
-DistantLight noon_sky() { return constant_sky({0.32f, 0.48f, 0.78f}); }
+// Clear sky at noon and a high sun, in units in which the sky's radiance is about one third.
+DistantLight noon_sky() { return constant_sky({0.24f, 0.32f, 0.46f}); }
 DistantLight noon_sun() {
     constexpr Float3 to_sun = {0.40f, -0.30f, 0.866f};
-    return directional_sun({3.0f, 2.8f, 2.4f}, to_sun);
+    return directional_sun({3.6f, 3.4f, 3.0f}, to_sun);
 }
 
 // Ambient on a sphere: the mean over normals up and around and down, so that the bounce shows too.
@@ -105,6 +107,7 @@ std::vector<Dot> gather_dots(const std::vector<Sector>& sectors, DotQuantity qua
             Dot dot{p[0], p[1], p[2], 0, probe.kind, {}};
             for (std::size_t b = 0; b < 3; ++b) dot.sky_visibility += decode_fixed(probe.sky_visibility[b], sky_visibility_scale) / 3;
             dot.colour = ambient_of(probe);
+            for (float& channel : dot.colour) channel *= exposure;
             if (quantity == DotQuantity::sky) dot.colour = {dot.sky_visibility, dot.sky_visibility, dot.sky_visibility};
             dots.push_back(dot);
         }
@@ -122,7 +125,7 @@ Ground ground_at(const Buckets& buckets, double x_m, double y_m) {
     buckets.visit_near(x_m, y_m, [&](const Dot& dot) {
         const double dx = dot.x_m - x_m, dy = dot.y_m - y_m, d2 = dx * dx + dy * dy;
         nearest = std::min(nearest, d2);
-        const double falloff = 1 / (1 + d2 / 12), weight = falloff * falloff * falloff;
+        const double falloff = 1 / (1 + d2 / 50), weight = falloff * falloff * falloff;
         weight_sum += weight;
         height_sum += weight * dot.z_m;
         visibility_sum += weight * static_cast<double>(dot.sky_visibility);
@@ -160,7 +163,7 @@ void draw_background(Image& image, const Extent& extent, const Buckets& buckets)
             const float slope_y = south.weight > 0 ? (here.height_m - south.height_m) / run_m : 0;
             // Lambert shading from the north-west, as relief maps are drawn.
             const float shade = std::max(0.0f, (0.5f * slope_x - 0.5f * slope_y + 0.8f) / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y));
-            const float grey = 0.30f * here.sky_visibility * here.sky_visibility * (0.35f + 0.65f * shade);
+            const float grey = 0.22f * here.sky_visibility * here.sky_visibility * (0.15f + 0.85f * shade);
             put_pixel(image, x, y, {grey, grey, grey * 1.05f});
         }
     }
@@ -184,7 +187,7 @@ void draw_dots(Image& image, const Extent& extent, std::vector<Dot> dots) {
     // Higher probes over lower ones, as seen from above.
     std::stable_sort(dots.begin(), dots.end(), [](const Dot& a, const Dot& b) { return a.z_m < b.z_m; });
     for (const Dot& dot : dots) {
-        const double radius_px = std::max(1.3, (dot.kind == ProbeKind::ground ? 1.5 : 1.9) / extent.metres_per_pixel);
+        const double radius_px = std::max(1.3, dot_radius_m / extent.metres_per_pixel);
         const double cx = (dot.x_m - extent.i0 * sector_size_m) / extent.metres_per_pixel;
         const double cy = (extent.j1 * sector_size_m - dot.y_m) / extent.metres_per_pixel;
         const auto low = [](double v) { return static_cast<std::size_t>(std::max(0.0, std::floor(v))); };
@@ -193,16 +196,20 @@ void draw_dots(Image& image, const Extent& extent, std::vector<Dot> dots) {
                 const double dx = static_cast<double>(x) + 0.5 - cx, dy = static_cast<double>(y) + 0.5 - cy;
                 const double d = std::sqrt(dx * dx + dy * dy);
                 if (d > radius_px) continue;
-                // A dark rim, white for manual probes, keeps dots apart from the ground.
-                const bool rim = d > radius_px - 1 && radius_px > 2.5;
-                const Float3 rim_colour = dot.kind == ProbeKind::manual ? Float3{1, 1, 1} : Float3{0, 0, 0};
-                put_pixel(image, x, y, rim ? rim_colour : dot.colour);
+                // Hand-placed probes have a white rim.
+                const bool rim = dot.kind == ProbeKind::manual && d > radius_px - 1;
+                put_pixel(image, x, y, rim ? Float3{1, 1, 1} : dot.colour);
             }
         }
     }
 }
 
 }  // namespace
+
+std::size_t covered_sectors(const std::vector<Sector>& sectors) {
+    const Extent e = measure(sectors, 1000);
+    return static_cast<std::size_t>(e.i1 - e.i0) * static_cast<std::size_t>(e.j1 - e.j0);
+}
 
 Image draw_region(const std::vector<Sector>& sectors, const PictureOptions& options) {
     const Extent extent = measure(sectors, options.metres_per_pixel);

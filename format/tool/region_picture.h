@@ -5,6 +5,7 @@
 
 #include <drtv/sector.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace drtv::tool {
@@ -16,7 +17,12 @@ struct PictureOptions {
     DotQuantity dots = DotQuantity::relit;
 };
 
-// REQUIRES: at least one sector.
+// The rectangle around all sectors, in sectors. REQUIRES: at least one sector.
+[[nodiscard]] std::size_t covered_sectors(const std::vector<Sector>& sectors);
+
+inline constexpr std::size_t max_covered_sectors = std::size_t{1} << 18;
+
+// REQUIRES: at least one sector, covered_sectors(sectors) <= max_covered_sectors.
 [[nodiscard]] Image draw_region(const std::vector<Sector>& sectors, const PictureOptions& options);
 
 }  // namespace drtv::tool

@@ -18,8 +18,8 @@ constexpr std::uint32_t rays = 2048;
 constexpr double rounding = 1e-5;
 
 // From 1 m above a plane, what lies beyond the reach of 512 m is a strip 1/512 high below the horizon: 0.52/512 of
-// a lobe that leans to the horizon, and 2,048 samples meet it four times, give or take four.
-constexpr double horizon_strip = 2 * 0.52 / 512;
+// a lobe that leans to the horizon, and 2,048 samples meet it two times, give or take two.
+constexpr double horizon_strip = 3 * 0.52 / 512;
 
 // The part of a lobe around the three upward directions that lies above the horizon, (1 + 0.577350) / 2.
 constexpr std::array<double, 4> open_share = {0.788675, 0.788675, 0.788675, 0};

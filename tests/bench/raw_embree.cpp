@@ -1,0 +1,63 @@
+#include "tests/bench/raw_embree.h"
+
+#include <cstring>
+
+namespace drtv::bench {
+
+RawEmbree::RawEmbree(const map::Map& map) : device_(rtcNewDevice("isa=avx2")), scene_(rtcNewScene(device_)) {
+    for (const map::Mesh& mesh : map.meshes) {
+        RTCScene scene = rtcNewScene(device_);
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        for (const map::Primitive& primitive : mesh.primitives) {
+            RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+            std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), primitive.positions.size()), primitive.positions.data(),
+                        primitive.positions.size() * sizeof(glm::vec3));
+            std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), primitive.triangles.size()), primitive.triangles.data(),
+                        primitive.triangles.size() * sizeof(glm::uvec3));
+            rtcCommitGeometry(geometry);
+            rtcAttachGeometry(scene, geometry);
+            rtcReleaseGeometry(geometry);
+        }
+        rtcCommitScene(scene);
+        meshes_.push_back(scene);
+    }
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    for (const map::Object& object : map.objects) {
+        RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(instance, meshes_[object.mesh]);
+        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &object.world_from_object[0][0]);
+        rtcCommitGeometry(instance);
+        rtcAttachGeometry(scene_, instance);
+        rtcReleaseGeometry(instance);
+    }
+    rtcCommitScene(scene_);
+}
+
+RawEmbree::~RawEmbree() {
+    rtcReleaseScene(scene_);
+    for (RTCScene mesh : meshes_) rtcReleaseScene(mesh);
+    rtcReleaseDevice(device_);
+}
+
+std::size_t RawEmbree::intersect(std::span<const trace::Ray> rays) const {
+    std::size_t hits = 0;
+    for (const trace::Ray& ray : rays) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RTCRayHit r{};
+        r.ray.org_x = ray.origin.x;
+        r.ray.org_y = ray.origin.y;
+        r.ray.org_z = ray.origin.z;
+        r.ray.dir_x = ray.direction.x;
+        r.ray.dir_y = ray.direction.y;
+        r.ray.dir_z = ray.direction.z;
+        r.ray.tfar = ray.far_m;
+        r.ray.mask = ~0u;
+        r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene_, &context, &r);
+        hits += r.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1u : 0u;
+    }
+    return hits;
+}
+
+}  // namespace drtv::bench
