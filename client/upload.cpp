@@ -27,7 +27,9 @@ struct Transfer {
     void show() { progress.show(total == 0 ? 1 : static_cast<double>(sent) / static_cast<double>(total), fmt::format("uploading {:.1f} of {:.1f} MB", static_cast<double>(sent) * 1e-6, static_cast<double>(total) * 1e-6)); }
 };
 
-tl::expected<v1::FindMissingBlobsResponse, std::string> find_missing(Connection& connection, const std::vector<const LocalFile*>& files) {
+bool passing(const grpc::Status& status) { return status.error_code() == grpc::StatusCode::ABORTED || status.error_code() == grpc::StatusCode::UNAVAILABLE; }
+
+grpc::Status find_missing(Connection& connection, const std::vector<const LocalFile*>& files, v1::FindMissingBlobsResponse& response) {
     v1::FindMissingBlobsRequest request;
     for (const LocalFile* file : files) {
         v1::Blob* blob = request.add_blobs();
@@ -35,10 +37,7 @@ tl::expected<v1::FindMissingBlobsResponse, std::string> find_missing(Connection&
         blob->set_size_bytes(file->size_bytes);
     }
     grpc::ClientContext context;
-    v1::FindMissingBlobsResponse response;
-    const grpc::Status status = connection.blobs->FindMissingBlobs(&context, request, &response);
-    if (!status.ok()) return tl::unexpected(connection.sentence(status));
-    return response;
+    return connection.blobs->FindMissingBlobs(&context, request, &response);
 }
 
 grpc::Status send_blob(Connection& connection, const LocalFile& file, std::int64_t offset, Transfer& transfer) {
@@ -72,18 +71,20 @@ tl::expected<void, std::string> upload_file(Connection& connection, const LocalF
     grpc::Status status;
     for (int attempt = 0; attempt < upload_attempts && !interrupted(); ++attempt) {
         if (attempt > 0) std::this_thread::sleep_for(upload_pause);
-        const auto missing = find_missing(connection, {&file});
-        if (!missing) return tl::unexpected(missing.error());
-        if (missing->missing_size() == 0) {
+        v1::FindMissingBlobsResponse missing;
+        status = find_missing(connection, {&file}, missing);
+        // A daemon that restarts is away for a moment.
+        if (passing(status)) continue;
+        if (!status.ok()) break;
+        if (missing.missing_size() == 0) {
             transfer.sent = sent_before + file.size_bytes;
             return {};
         }
-        const std::int64_t offset = missing->missing(0).received_bytes() <= file.size_bytes ? missing->missing(0).received_bytes() : 0;
+        const std::int64_t offset = missing.missing(0).received_bytes() <= file.size_bytes ? missing.missing(0).received_bytes() : 0;
         transfer.sent = sent_before + offset;
         status = send_blob(connection, file, offset, transfer);
         if (status.ok()) return {};
-        const bool passing = status.error_code() == grpc::StatusCode::ABORTED || status.error_code() == grpc::StatusCode::UNAVAILABLE;
-        if (!passing) break;
+        if (!passing(status)) break;
     }
     if (interrupted()) return tl::unexpected(std::string("interrupted; what was uploaded stays with the server"));
     return tl::unexpected(fmt::format("cannot upload {}: {}", file.disk_path, connection.sentence(status)));
@@ -94,12 +95,12 @@ tl::expected<void, std::string> upload_file(Connection& connection, const LocalF
 tl::expected<v1::Map, std::string> upload_map(Connection& connection, const LocalMap& map) {
     std::vector<const LocalFile*> all;
     for (const LocalFile& file : map.files) all.push_back(&file);
-    const auto missing = find_missing(connection, all);
-    if (!missing) return tl::unexpected(missing.error());
+    v1::FindMissingBlobsResponse missing;
+    if (const grpc::Status status = find_missing(connection, all, missing); !status.ok()) return tl::unexpected(connection.sentence(status));
     {
         Transfer transfer;
-        for (const auto& m : missing->missing()) transfer.total += m.blob().size_bytes();
-        for (const auto& m : missing->missing()) {
+        for (const auto& m : missing.missing()) transfer.total += m.blob().size_bytes();
+        for (const auto& m : missing.missing()) {
             const auto file = std::find_if(map.files.begin(), map.files.end(), [&](const LocalFile& f) { return f.sha256 == m.blob().sha256(); });
             if (auto uploaded = upload_file(connection, *file, transfer); !uploaded) return tl::unexpected(uploaded.error());
         }

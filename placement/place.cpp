@@ -159,7 +159,8 @@ class Placer {
     }
 
     // This sector's own probes; past 255 the distance grows by eighths until they fit. Neighbours do not see
-    // that, so a border may lose probes by it but never gain one too near.
+    // that, so a border may lose probes by it but never gain one too near. One probe is kept at any distance, so
+    // that growing is no way out for a sector that manual ones fill.
     std::vector<PlacedProbe> thin(std::size_t manual_count) {
         std::vector<Candidate> own;
         for (const Kept& kept : kept_) {
@@ -167,7 +168,7 @@ class Placer {
         }
         report_.used_distance_m = settings_.min_distance_m;
         std::vector<PlacedProbe> probes;
-        for (;; report_.used_distance_m *= 1.125f) {
+        for (; manual_count < max_probes; report_.used_distance_m *= 1.125f) {
             const std::int64_t least = squared_units(report_.used_distance_m);
             probes.clear();
             for (const Candidate& candidate : own) {

@@ -31,7 +31,7 @@ using Position = glm::ivec3;  // world, in units of 2^-10 m
 [[nodiscard]] glm::vec3 metres(const Position& position);
 
 struct Settings {
-    float min_distance_m = 6;  // between automatic probes, 1 to 64
+    float min_distance_m = 6;  // between automatic probes, 1 to 16: beyond, the margin below grows past 500 m
 };
 
 struct ColumnHit {

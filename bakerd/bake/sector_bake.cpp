@@ -66,14 +66,15 @@ tl::expected<void, std::string> store_positions(const std::vector<placement::Pla
     const std::int32_t lowest = std::min_element(probes.begin(), probes.end(), by_height)->position.z;
     const std::int32_t highest = std::max_element(probes.begin(), probes.end(), by_height)->position.z;
     sector.z_origin_units = lowest;
-    while (((highest - lowest) >> sector.z_shift) > 65535) {
+    const auto step_of = [&](std::int32_t z) { return (z - lowest + ((1 << sector.z_shift) >> 1)) >> sector.z_shift; };
+    while (step_of(highest) > 65535) {
         if (++sector.z_shift > max_z_shift) return tl::unexpected(fmt::format("sector ({}, {}): its probes span {} m of height", sector.i, sector.j, (highest - lowest) / position_units_per_m));
     }
     constexpr std::int32_t side = sector_size_m * position_units_per_m;
     for (const placement::PlacedProbe& placed : probes) {
         Probe probe;
         probe.position = {static_cast<std::uint16_t>(placed.position.x - sector.i * side), static_cast<std::uint16_t>(placed.position.y - sector.j * side),
-                          static_cast<std::uint16_t>((placed.position.z - lowest) >> sector.z_shift)};
+                          static_cast<std::uint16_t>(step_of(placed.position.z))};
         probe.kind = kind_of(placed.kind);
         sector.probes.push_back(probe);
     }
@@ -102,7 +103,8 @@ void store_report(const placement::Report& report, Statistics& statistics) {
 
 tl::expected<Sector, std::string> bake_sector(World& world, map::SectorCoordinate coordinate, const Settings& settings) {
     const trace::FloatMode float_mode;
-    const auto scene = world.scene_for(coordinate, settings.reach_m);
+    // Placement looks over the border too, however short the reach.
+    const auto scene = world.scene_for(coordinate, std::max(settings.reach_m, placement::decision_margin_m({settings.min_distance_m})));
     const auto samples = world.samples_for(settings);
     const placement::Surroundings surroundings = surroundings_of(*scene, settings.reach_m);
     auto placed = place(world, *scene, surroundings, coordinate, settings.min_distance_m);

@@ -43,7 +43,7 @@ tl::expected<void, std::string> set(Settings& settings, std::string_view key, st
     if (key == "rays") return assign(settings.rays, parse<std::uint32_t>(key, value, 16, 65536));
     if (key == "bounces") return assign(settings.bounces, parse<std::uint32_t>(key, value, 0, 8));
     if (key == "reach") return assign(settings.reach_m, parse<float>(key, value, 1, 8192));
-    if (key == "min_distance") return assign(settings.min_distance_m, parse<float>(key, value, 1, 64));
+    if (key == "min_distance") return assign(settings.min_distance_m, parse<float>(key, value, 1, 16));
     return tl::unexpected(fmt::format("the setting '{}' is unknown: there are rays, bounces, reach and min_distance", key));
 }
 

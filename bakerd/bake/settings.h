@@ -18,7 +18,7 @@ struct Settings {
     std::uint32_t rays = 2048;  // primary rays a probe, 16 to 65536
     std::uint32_t bounces = 3;  // surface bounces, 0 to 8
     float reach_m = 512;        // farther than this from the probe is sky, 1 to 8192
-    float min_distance_m = 6;   // between automatic probes, 1 to 64
+    float min_distance_m = 6;   // between automatic probes, 1 to 16
 
     bool operator==(const Settings&) const = default;
 };

@@ -1,7 +1,5 @@
 #include "bakerd/bake/world.h"
 
-#include "placement/placement.h"
-
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -28,14 +26,14 @@ tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<co
     return world;
 }
 
-std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate sector, float reach_m) {
+std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate sector, float distance_m) {
     const map::SectorCoordinate tile{floor_div(sector.i, tile_sectors), floor_div(sector.j, tile_sectors)};
     CachedScene entry;
     {
         const std::lock_guard lock(mutex_);
-        const auto found = std::find_if(scenes_.begin(), scenes_.end(), [&](const CachedScene& s) { return s.tile == tile && s.reach_m == reach_m; });
+        const auto found = std::find_if(scenes_.begin(), scenes_.end(), [&](const CachedScene& s) { return s.tile == tile && s.distance_m == distance_m; });
         if (found != scenes_.end()) scenes_.splice(scenes_.begin(), scenes_, found);
-        else scenes_.push_front({tile, reach_m, std::make_shared<std::once_flag>(), std::make_shared<std::shared_ptr<const trace::Scene>>()});
+        else scenes_.push_front({tile, distance_m, std::make_shared<std::once_flag>(), std::make_shared<std::shared_ptr<const trace::Scene>>()});
         while (scenes_.size() > kept_scenes) scenes_.pop_back();
         entry = scenes_.front();
     }
@@ -45,9 +43,7 @@ std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate secto
         tbb::this_task_arena::isolate([&] {
             constexpr float side_m = tile_sectors * static_cast<float>(map::sector_size_m);
             const glm::vec2 corner = glm::vec2(tile.i, tile.j) * side_m;
-            // Placement looks over the border too, however short the reach.
-            const float margin_m = std::max(reach_m, placement::decision_margin_m({64}));
-            *entry.scene = trace::Scene::build(geometry_, {corner, corner + side_m}, margin_m);
+            *entry.scene = trace::Scene::build(geometry_, {corner, corner + side_m}, distance_m);
         });
     });
     return *entry.scene;

@@ -27,16 +27,16 @@ class World {
     [[nodiscard]] const std::vector<placement::ClosedVolume>& no_probes() const { return no_probes_; }
     [[nodiscard]] const std::vector<glm::dvec3>& manual_probes() const { return manual_probes_; }
 
-    // The scene for a sector: shared by the 8 x 8 sectors of its tile, so that neighbours do not build it again.
-    // Which objects beyond the reach it holds does not change any answer.
-    [[nodiscard]] std::shared_ptr<const trace::Scene> scene_for(map::SectorCoordinate sector, float reach_m);
+    // All objects within a distance of the sector, and some more: the scene is shared by the 8 x 8 sectors of its
+    // tile, so that neighbours do not build it again. What it holds beyond the distance changes no answer within.
+    [[nodiscard]] std::shared_ptr<const trace::Scene> scene_for(map::SectorCoordinate sector, float distance_m);
 
     [[nodiscard]] std::shared_ptr<const SampleTable> samples_for(const Settings& settings);
 
   private:
     struct CachedScene {
         map::SectorCoordinate tile;
-        float reach_m;
+        float distance_m;
         std::shared_ptr<std::once_flag> built;
         std::shared_ptr<std::shared_ptr<const trace::Scene>> scene;
     };

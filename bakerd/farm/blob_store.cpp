@@ -55,7 +55,8 @@ Result<std::vector<std::uint8_t>> read_all(const std::string& path) {
     while (at < bytes.size()) {
         const ssize_t n = ::read(file.fd(), bytes.data() + at, bytes.size() - at);
         if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return file_error("read", path);
+        if (n < 0) return file_error("read", path);
+        if (n == 0) bytes.resize(at);  // cut short meanwhile: the digest will tell
         at += static_cast<std::size_t>(n);
     }
     return bytes;
@@ -66,7 +67,7 @@ bool sync_folder(const std::string& folder) {
     return file.fd() >= 0 && ::fsync(file.fd()) == 0;
 }
 
-// Unique among threads and processes of one machine.
+// Unique among the living threads and processes of one machine; a dead one may have left the same name behind.
 std::string temporary_name() {
     static std::atomic<std::uint64_t> counter{0};
     return fmt::format("{}.{}", ::getpid(), counter++);
@@ -81,6 +82,14 @@ Result<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& folder) {
         if (code) return fail(ErrorCode::internal, fmt::format("cannot make the folder {}/{}: {}", folder, part, code.message()));
     }
     return std::unique_ptr<BlobStore>(new BlobStore(folder));
+}
+
+void BlobStore::remove_leftovers() const {
+    std::error_code code;
+    for (fs::directory_iterator entry(folder_ + "/tmp", code), end; !code && entry != end; entry.increment(code)) {
+        std::error_code ignored;
+        fs::remove(entry->path(), ignored);
+    }
 }
 
 std::string BlobStore::path_of(const Digest& digest) const {
@@ -103,8 +112,13 @@ Result<void> BlobStore::publish(const std::string& temporary, const Digest& dige
 Result<Digest> BlobStore::put(std::span<const std::uint8_t> bytes) {
     const Digest digest = map::digest_of(bytes);
     if (has(digest)) return digest;
-    const std::string temporary = fmt::format("{}/tmp/{}", folder_, temporary_name());
-    File file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    std::string temporary;
+    int fd = -1;
+    do {
+        temporary = fmt::format("{}/tmp/{}", folder_, temporary_name());
+        fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (fd < 0 && errno == EEXIST);
+    File file(fd);
     if (file.fd() < 0) return file_error("write", temporary);
     if (!write_all(file.fd(), bytes) || ::fsync(file.fd()) != 0 || !file.close()) {
         auto error = file_error("write", temporary);
@@ -121,7 +135,7 @@ Result<Digest> BlobStore::put(std::span<const std::uint8_t> bytes) {
 Result<std::vector<std::uint8_t>> BlobStore::get(const Digest& digest) {
     const std::string path = path_of(digest);
     auto bytes = read_all(path);
-    if (!bytes) return fail(ErrorCode::not_found, bytes.error().message);
+    if (!bytes) return fail(has(digest) ? bytes.error().code : ErrorCode::not_found, bytes.error().message);
     if (map::digest_of(*bytes) != digest) {
         ::unlink(path.c_str());
         return fail(ErrorCode::data_loss, fmt::format("the stored blob {} is damaged; it was removed", to_hex(digest)));

@@ -22,9 +22,14 @@ class BlobStore {
     // `folder` must exist; its parts are made when needed.
     [[nodiscard]] static Result<std::unique_ptr<BlobStore>> open(const std::string& folder);
 
+    // Temporary files of processes that died at work.
+    // REQUIRES: nobody is writing to the folder (the daemon calls it under the data folder's lock, before any worker).
+    void remove_leftovers() const;
+
     [[nodiscard]] Result<Digest> put(std::span<const std::uint8_t> bytes);
 
     // Checks the digest of what it reads: a damaged blob is removed and reported as data_loss, never returned.
+    // not_found: there is none; internal: it is there and cannot be read.
     [[nodiscard]] Result<std::vector<std::uint8_t>> get(const Digest& digest);
 
     [[nodiscard]] bool has(const Digest& digest) const;
@@ -39,7 +44,8 @@ class BlobStore {
         Upload(Upload&& other) noexcept;
         ~Upload();
         [[nodiscard]] Result<void> append(std::span<const std::uint8_t> bytes);
-        // The blob stands in the store; or the upload is thrown away and invalid_argument says what was wrong.
+        // The blob stands in the store; or invalid_argument says what was wrong: bytes of another digest are thrown
+        // away, an upload that ended early is kept to go on.
         [[nodiscard]] Result<void> finish();
 
       private:

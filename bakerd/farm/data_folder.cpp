@@ -20,6 +20,11 @@ Result<std::unique_ptr<DataFolder>> DataFolder::lock(const std::string& path) {
     const int fd = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (fd < 0) return fail(ErrorCode::internal, fmt::format("cannot write to the data folder {}: {}", path, std::strerror(errno)));
     if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
+        if (errno != EWOULDBLOCK) {
+            const int error = errno;
+            ::close(fd);
+            return fail(ErrorCode::internal, fmt::format("cannot lock the data folder {}: {}", path, std::strerror(error)));
+        }
         std::array<char, 32> owner{};
         const ssize_t read = ::read(fd, owner.data(), owner.size() - 1);
         ::close(fd);

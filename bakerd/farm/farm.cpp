@@ -31,6 +31,7 @@ Result<std::unique_ptr<Farm>> Farm::open(Options options) {
     if (!folder) return tl::unexpected(folder.error());
     auto blobs = BlobStore::open((*folder)->blobs());
     if (!blobs) return tl::unexpected(blobs.error());
+    (*blobs)->remove_leftovers();
     auto database = Database::open((*folder)->database());
     if (!database) return tl::unexpected(database.error());
     std::unique_ptr<Farm> farm(new Farm(std::move(options), std::move(*folder), std::move(*blobs), std::move(*database)));
@@ -86,11 +87,26 @@ void Farm::adopt(Job& job, std::vector<TaskRow> tasks, const std::vector<map::Se
         if (row.state == TaskState::failed) ++job.counts.failed;
         const auto [entry, added] = tasks_.try_emplace(id);
         Task& task = entry->second;
-        if (added) task.row = std::move(row);
+        if (!added && task.row.state != TaskState::pending && row.state == TaskState::pending) reopen(task);
+        if (added || !task.running) task.row = std::move(row);
         task.jobs.push_back(job.row.id);
     }
     for (const map::SectorCoordinate& sector : order) {
         if (tasks_[id_of[sector]].row.state == TaskState::pending) waiting_.push_back(id_of[sector]);
+    }
+}
+
+// A task that is asked for anew is unfinished again for the running jobs that had counted it.
+void Farm::reopen(const Task& task) {
+    for (std::int64_t id : task.jobs) {
+        Job& job = jobs_.at(id);
+        if (task.row.state == TaskState::done) {
+            --job.counts.done;
+            job.counts.probes -= task.row.result.probes;
+        } else {
+            --job.counts.failed;
+        }
+        changed(job);
     }
 }
 
@@ -113,10 +129,11 @@ Result<MapView> Farm::create_map(Manifest given) {
     if (const auto* failure = std::get_if<FailureAnswer>(&outcome)) {
         return fail(failure->may_retry ? ErrorCode::unavailable : ErrorCode::invalid_argument, failure->sentence);
     }
-    const auto& summary = std::get<InspectAnswer>(outcome);
+    const auto* summary = std::get_if<InspectAnswer>(&outcome);
+    if (summary == nullptr) return fail(ErrorCode::internal, "the worker gave an answer to another question");
     const std::lock_guard lock(mutex_);
-    if (auto put = database_->put_map(*id, summary); !put) return tl::unexpected(put.error());
-    return MapView{*id, std::move(*manifest), summary};
+    if (auto put = database_->put_map(*id, *summary); !put) return tl::unexpected(put.error());
+    return MapView{*id, std::move(*manifest), *summary};
 }
 
 Result<MapView> Farm::get_map(const Digest& id) {
@@ -212,10 +229,9 @@ Result<TaskRow> Farm::find_or_add_task(const JobRow& job, const Digest& content,
         row.state = TaskState::pending;
         row.failed_attempts = 0;
         row.error.clear();
+        row.result = {};
         row.manifest = job.manifest;
         if (auto updated = database_->update_task(row); !updated) return tl::unexpected(updated.error());
-        const auto in_memory = tasks_.find(row.id);
-        if (in_memory != tasks_.end()) in_memory->second.row = row;
     }
     return row;
 }

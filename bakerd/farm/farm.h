@@ -96,6 +96,7 @@ class Farm {
     Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<BlobStore> blobs, std::unique_ptr<Database> database);
     [[nodiscard]] Result<void> load();
     void adopt(Job& job, std::vector<TaskRow> tasks, const std::vector<map::SectorCoordinate>& order);
+    void reopen(const Task& task);
     [[nodiscard]] Result<std::vector<TaskRow>> plan(JobRow& row, const InspectAnswer& map, const std::vector<map::SectorCoordinate>& sectors);
     [[nodiscard]] Result<TaskRow> find_or_add_task(const JobRow& job, const Digest& content, const Digest& settings_key, map::SectorCoordinate sector);
     [[nodiscard]] std::optional<BakeRequest> next_task();

@@ -43,6 +43,7 @@ std::future<Outcome> LocalExecutor::inspect(const map::Digest& manifest) {
         const std::lock_guard lock(mutex_);
         if (draining_ || stopping_) request.promise->set_value(FailureAnswer{"the server is stopping", true});
         else inspections_.push_back(std::move(request));
+        woken_ = true;
     }
     changed_.notify_all();
     return future;
@@ -51,7 +52,7 @@ std::future<Outcome> LocalExecutor::inspect(const map::Digest& manifest) {
 void LocalExecutor::drain(std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);
     draining_ = true;
-    changed_.wait_for(lock, patience, [this] { return in_flight_count_ == 0; });
+    changed_.wait_for(lock, patience, [this] { return idle_; });
 }
 
 void LocalExecutor::run() {
@@ -59,10 +60,12 @@ void LocalExecutor::run() {
         std::deque<Event> events;
         {
             std::unique_lock lock(mutex_);
-            in_flight_count_ = in_flight_.size();
-            if (in_flight_count_ == 0) changed_.notify_all();
-            changed_.wait(lock, [this] { return stopping_ || woken_ || !events_.empty() || !inspections_.empty(); });
+            idle_ = in_flight_.empty();
+            if (idle_) changed_.notify_all();
+            // Not for inspections_: while the window is full they wait for an event.
+            changed_.wait(lock, [this] { return stopping_ || woken_ || !events_.empty(); });
             if (stopping_) return;
+            idle_ = false;
             woken_ = false;
             events.swap(events_);
         }

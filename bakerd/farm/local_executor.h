@@ -90,7 +90,7 @@ class LocalExecutor {
     bool woken_ = false;                // guarded by mutex_
     bool draining_ = false;             // guarded by mutex_
     bool stopping_ = false;             // guarded by mutex_
-    std::size_t in_flight_count_ = 0;   // guarded by mutex_; size of in_flight_ for drain()
+    bool idle_ = false;                 // guarded by mutex_; the thread waits and nothing is in flight, for drain()
 
     // Used by the executor's thread only.
     std::unique_ptr<WorkerProcess> worker_;

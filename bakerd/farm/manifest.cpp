@@ -33,6 +33,8 @@ Result<Manifest> normalised(Manifest manifest) {
         if (n > 0 && manifest.files[n - 1].path == path) return fail(ErrorCode::invalid_argument, fmt::format("the file '{}' stands twice in the map", path));
     }
     if (manifest.roots.empty()) return fail(ErrorCode::invalid_argument, "the map names no glTF file to import");
+    const auto twice = std::adjacent_find(manifest.roots.begin(), manifest.roots.end());
+    if (twice != manifest.roots.end()) return fail(ErrorCode::invalid_argument, fmt::format("the root '{}' stands twice in the map", *twice));
     for (const std::string& root : manifest.roots) {
         const bool known = std::any_of(manifest.files.begin(), manifest.files.end(), [&](const ManifestFile& file) { return file.path == root; });
         if (!known) return fail(ErrorCode::invalid_argument, fmt::format("the root '{}' is not among the map's files", root));

@@ -98,14 +98,17 @@ class Worker {
             promise.set_value(load(manifest));
         } catch (...) {
             promise.set_exception(std::current_exception());
+            forget(manifest);
         }
         const MapResult& result = future.get();
-        if (!result) {
-            // Not worth keeping: the reason may pass.
-            const std::lock_guard lock(maps_mutex_);
-            maps_.remove_if([&](const Entry& entry) { return entry.manifest == manifest; });
-        }
+        if (!result) forget(manifest);
         return result;
+    }
+
+    // A failure is not worth keeping: its reason may pass.
+    void forget(const Digest& manifest) {
+        const std::lock_guard lock(maps_mutex_);
+        maps_.remove_if([&](const Entry& entry) { return entry.manifest == manifest; });
     }
 
     MapResult load(const Digest& digest) {

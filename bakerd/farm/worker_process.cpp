@@ -97,6 +97,8 @@ void WorkerProcess::read_answers() {
             else ::kill(pid_, SIGKILL);
         }
     }
+    // One that closed its output and lives on will never answer.
+    ::kill(pid_, SIGKILL);
     siginfo_t info{};
     while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0 && errno == EINTR) {}
     const int status = info.si_code == CLD_EXITED ? info.si_status << 8 : info.si_status;

@@ -21,6 +21,7 @@ class WorkerProcess {
         std::function<void(std::string)> died;  // how, as half a sentence: "was killed by signal 9 (Killed)"
     };
 
+    // REQUIRES: the process ignores SIGPIPE, because a worker may die while it is written to.
     // Starts `command` (program and arguments). The events come from a thread of its own; `died` comes last, once.
     [[nodiscard]] static Result<std::unique_ptr<WorkerProcess>> start(const std::vector<std::string>& command, Events events);
 

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <utility>
+
 namespace drtv::farm {
 namespace {
 
@@ -9,12 +11,20 @@ using Json = nlohmann::json;
 
 std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+// The library would cut a number to its type without a word.
+template <class Integer>
+Integer integer(const Json& json) {
+    const bool fits = json.is_number_unsigned() ? std::in_range<Integer>(json.get<std::uint64_t>()) : json.is_number_integer() && std::in_range<Integer>(json.get<std::int64_t>());
+    if (!fits) throw Json::other_error::create(502, "not an integer in range", nullptr);
+    return json.get<Integer>();
+}
+
 Json to_json(const map::SectorCoordinate& sector) { return Json::array({sector.i, sector.j}); }
-map::SectorCoordinate sector_from(const Json& json) { return {json.at(0).get<std::int32_t>(), json.at(1).get<std::int32_t>()}; }
+map::SectorCoordinate sector_from(const Json& json) { return {integer<std::int32_t>(json.at(0)), integer<std::int32_t>(json.at(1))}; }
 
 Json to_json(const bake::Settings& s) { return {{"rays", s.rays}, {"bounces", s.bounces}, {"reach", s.reach_m}, {"min_distance", s.min_distance_m}}; }
 bake::Settings settings_from(const Json& json) {
-    return {json.at("rays").get<std::uint32_t>(), json.at("bounces").get<std::uint32_t>(), json.at("reach").get<float>(), json.at("min_distance").get<float>()};
+    return {integer<std::uint32_t>(json.at("rays")), integer<std::uint32_t>(json.at("bounces")), json.at("reach").get<float>(), json.at("min_distance").get<float>()};
 }
 
 map::Digest digest_from(const Json& json) {
@@ -44,8 +54,10 @@ std::string encode(const WorkerRequest& request) {
 
 std::optional<WorkerRequest> decode_request(std::string_view text) {
     return guarded(text, [](const Json& json) -> WorkerRequest {
-        const auto id = json.at("id").get<std::uint64_t>();
-        if (json.at("op") == "inspect") return InspectRequest{id, digest_from(json.at("map"))};
+        const auto id = integer<std::uint64_t>(json.at("id"));
+        const auto op = json.at("op").get<std::string>();
+        if (op != "inspect" && op != "bake") throw Json::other_error::create(503, "unknown request", nullptr);
+        if (op == "inspect") return InspectRequest{id, digest_from(json.at("map"))};
         return BakeRequest{id, digest_from(json.at("map")), sector_from(json.at("sector")), settings_from(json.at("settings"))};
     });
 }
@@ -68,17 +80,17 @@ std::string encode(const WorkerAnswer& answer) {
 std::optional<WorkerAnswer> decode_answer(std::string_view text) {
     return guarded(text, [](const Json& json) -> WorkerAnswer {
         WorkerAnswer answer;
-        answer.id = json.at("id").get<std::uint64_t>();
+        answer.id = integer<std::uint64_t>(json.at("id"));
         if (json.contains("error")) {
             answer.what = FailureAnswer{json.at("error").get<std::string>(), json.at("retry").get<bool>()};
         } else if (json.contains("result")) {
-            answer.what = BakeAnswer{digest_from(json.at("result")), json.at("size").get<std::int64_t>(), json.at("probes").get<std::int64_t>(), json.at("rays").get<std::int64_t>()};
+            answer.what = BakeAnswer{digest_from(json.at("result")), integer<std::int64_t>(json.at("size")), integer<std::int64_t>(json.at("probes")), integer<std::int64_t>(json.at("rays"))};
         } else {
             InspectAnswer inspected;
             inspected.content = digest_from(json.at("content"));
             for (const Json& sector : json.at("sectors")) inspected.sectors.push_back(sector_from(sector));
-            inspected.object_count = json.at("objects").get<std::int64_t>();
-            inspected.triangle_count = json.at("triangles").get<std::int64_t>();
+            inspected.object_count = integer<std::int64_t>(json.at("objects"));
+            inspected.triangle_count = integer<std::int64_t>(json.at("triangles"));
             inspected.warnings = json.at("warnings").get<std::vector<std::string>>();
             answer.what = std::move(inspected);
         }

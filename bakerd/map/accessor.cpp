@@ -9,8 +9,9 @@
 namespace drtv::map {
 namespace {
 
-// An accessor without bufferView is all zeros, at no cost in the file: it needs a limit of its own.
 constexpr std::size_t max_elements = std::size_t{1} << 27;
+// An accessor without bufferView is all zeros, at no cost in the file: it needs a limit of its own.
+constexpr std::size_t max_zeros = std::size_t{1} << 20;
 
 std::size_t bytes_of(int component_type) {
     switch (component_type) {
@@ -96,6 +97,7 @@ tl::expected<Checked, std::string> check(const GltfDocument& document, int index
     if (component_bytes == 0) return fail(fmt::format("component type {} is unknown", accessor.componentType));
     if (component_count(document, index) != components) return fail(fmt::format("it has {} components, {} are needed here", component_count(document, index), components));
     if (accessor.count > max_elements) return fail(fmt::format("its {} elements are over the limit of {}", accessor.count, max_elements));
+    if (accessor.bufferView < 0 && accessor.count > max_zeros) return fail(fmt::format("it has {} elements and no bufferView, over the limit of {}", accessor.count, max_zeros));
     return Checked{&accessor, where, component_bytes};
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace drtv::map {
 namespace {
@@ -12,6 +13,15 @@ enum class Tag : std::uint32_t { texture = 1, material, primitive, mesh, object,
 
 // -0 and 0 bake alike.
 glm::vec3 plain(const glm::vec3& v) { return v + 0.0f; }
+
+// Puts things in the order of their digests, and the digests too.
+template <class Thing>
+void sort_by(std::vector<Digest>& digests, std::vector<Thing>& things) {
+    std::vector<std::pair<Digest, Thing>> pairs;
+    for (std::size_t n = 0; n < things.size(); ++n) pairs.emplace_back(digests[n], std::move(things[n]));
+    std::ranges::stable_sort(pairs, {}, &std::pair<Digest, Thing>::first);
+    for (std::size_t n = 0; n < things.size(); ++n) std::tie(digests[n], things[n]) = std::move(pairs[n]);
+}
 
 }  // namespace
 
@@ -29,15 +39,18 @@ Digest digest_texture(const Texture& texture) {
 Digest digest_material(const Material& material, const Map& map) {
     Hasher hasher;
     hasher.add(Tag::material);
-    hasher.add(material.base_colour);
+    hasher.add(plain(glm::vec3(material.base_colour)));
     hasher.add(material.texture != no_texture);
     if (material.texture != no_texture) {
         hasher.add(map.textures[material.texture].digest);
-        hasher.add(material.texture_u_from_uv);
-        hasher.add(material.texture_v_from_uv);
+        hasher.add(plain(material.texture_u_from_uv));
+        hasher.add(plain(material.texture_v_from_uv));
     }
     hasher.add(material.masked);
-    if (material.masked) hasher.add(material.alpha_cutoff);
+    if (material.masked) {
+        hasher.add(material.base_colour.w);
+        hasher.add(material.alpha_cutoff);
+    }
     hasher.add(material.double_sided);
     return hasher.finish();
 }
@@ -79,25 +92,35 @@ Digest digest_volume(const Volume& volume) {
     return hasher.finish();
 }
 
+Digest digest_light(const Light& light) {
+    Hasher hasher;
+    hasher.add(Tag::light);
+    hasher.add(light.kind);
+    hasher.add(plain(light.colour));
+    for (float value : {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians}) hasher.add(value);
+    // A sun stands nowhere, and a point light shines all around.
+    if (light.kind != LightKind::directional) hasher.add(plain(light.position));
+    if (light.kind != LightKind::point) hasher.add(plain(light.direction));
+    return hasher.finish();
+}
+
 void finish_content(Map& map) {
-    const auto by_digest = [](const auto& a, const auto& b) { return a.digest < b.digest; };
-    std::stable_sort(map.objects.begin(), map.objects.end(), by_digest);
-    std::stable_sort(map.volumes.begin(), map.volumes.end(), by_digest);
+    std::ranges::stable_sort(map.objects, {}, &Object::digest);
     std::stable_sort(map.probes.begin(), map.probes.end(), [](const ManualProbe& a, const ManualProbe& b) {
         return std::tuple(a.position.x, a.position.y, a.position.z) < std::tuple(b.position.x, b.position.y, b.position.z);
     });
-    std::vector<Digest> lights;
-    for (const Light& light : map.lights) {
+    std::vector<Digest> lights, volumes;
+    for (const Light& light : map.lights) lights.push_back(digest_light(light));
+    sort_by(lights, map.lights);
+    for (const Volume& volume : map.volumes) {
         Hasher hasher;
-        hasher.add(Tag::light);
-        hasher.add(light.kind);
-        hasher.add(light.colour);
-        for (float value : {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians}) hasher.add(value);
-        hasher.add(plain(light.position));
-        hasher.add(plain(light.direction));
-        lights.push_back(hasher.finish());
+        hasher.add(volume.digest);
+        // The name says which probe an interior uses; what counts is where that probe stands.
+        hasher.add(!volume.probe_name.empty());
+        if (!volume.probe_name.empty()) hasher.add(std::ranges::find(map.probes, volume.probe_name, &ManualProbe::name)->position);
+        volumes.push_back(hasher.finish());
     }
-    std::sort(lights.begin(), lights.end());
+    sort_by(volumes, map.volumes);
 
     Hasher hasher;
     hasher.add(Tag::map);
@@ -105,13 +128,7 @@ void finish_content(Map& map) {
     for (const Object& object : map.objects) hasher.add(object.digest);
     hasher.add(static_cast<std::uint64_t>(map.probes.size()));
     for (const ManualProbe& probe : map.probes) hasher.add(probe.position);
-    hasher.add(static_cast<std::uint64_t>(map.volumes.size()));
-    for (const Volume& volume : map.volumes) {
-        hasher.add(volume.digest);
-        // The name says which probe an interior uses; what counts is where that probe stands.
-        const auto probe = std::find_if(map.probes.begin(), map.probes.end(), [&](const ManualProbe& p) { return !volume.probe_name.empty() && p.name == volume.probe_name; });
-        hasher.add(probe != map.probes.end() ? probe->position : glm::dvec3(0));
-    }
+    hasher.add_sized(volumes);
     hasher.add_sized(lights);
     map.content = hasher.finish();
 }

@@ -1,6 +1,8 @@
 // Checks a glTF document's JSON before tinygltf sees it: what tinygltf skips over silently, or trusts.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,11 +11,21 @@
 
 namespace drtv::map {
 
-struct DocumentSummary {
-    std::vector<std::string> external_files;  // decoded, relative to the document's folder
+// Bytes that lie outside the JSON.
+struct OutsideBytes {
+    std::string element;                 // "buffer 0", for messages
+    std::optional<std::string> path;     // decoded, relative to the document's folder; without one, the GLB's binary chunk
+    std::optional<std::size_t> size_bytes;  // a buffer's byteLength; an image has its whole file
+};
+
+struct CheckedDocument {
+    // The document for tinygltf. Numbers stand as it wants them (an index written as 3.0 is 3), what no bake needs
+    // is left out (animations, skins, cameras), and the uri of a buffer or image outside is its place in `outside`.
+    std::string json;
+    std::vector<OutsideBytes> outside;
 };
 
 // `json` is the text of a .gltf or of a .glb's first chunk. Sentences do not name the file; the caller does.
-[[nodiscard]] tl::expected<DocumentSummary, std::string> check_document(std::string_view json);
+[[nodiscard]] tl::expected<CheckedDocument, std::string> check_document(std::string_view json);
 
 }  // namespace drtv::map

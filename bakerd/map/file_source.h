@@ -1,6 +1,7 @@
 // Where the bytes of a map's files come from: a folder, a store of blobs, or memory.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -11,6 +12,9 @@
 namespace drtv::map {
 
 using FileBytes = std::vector<std::uint8_t>;
+
+// Larger files are refused; tinygltf and stb_image count in 32 bits.
+inline constexpr std::size_t max_file_bytes = INT32_MAX;
 
 // Gives the bytes of the file with this path, relative to the map's folder, `/` between names; else one
 // sentence that says why not. Must be safe to call again with the same path.

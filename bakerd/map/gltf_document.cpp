@@ -1,47 +1,80 @@
 #include "bakerd/map/gltf_document.h"
 
 #include "bakerd/map/document_check.h"
+#include "bakerd/map/document_uri.h"
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cstring>
 #include <exception>
+#include <optional>
+#include <span>
 #include <string_view>
 
 namespace drtv::map {
 namespace {
 
-constexpr std::size_t max_file_bytes = std::size_t{1} << 31;
-
 std::uint32_t load_u32(const FileBytes& bytes, std::size_t at) {
     return bytes[at] | std::uint32_t{bytes[at + 1]} << 8 | std::uint32_t{bytes[at + 2]} << 16 | std::uint32_t{bytes[at + 3]} << 24;
 }
 
-// The JSON of a GLB, with its framing checked (glTF 2.0, section 4).
-tl::expected<std::string_view, std::string> glb_json(const FileBytes& bytes) {
+struct GlbChunks {
+    std::string_view json;
+    std::optional<std::span<const std::uint8_t>> binary;
+};
+
+// The chunks of a GLB, with its framing checked (glTF 2.0, section 4). Chunks of unknown types are passed over.
+tl::expected<GlbChunks, std::string> glb_chunks(const FileBytes& bytes) {
     if (bytes.size() < 20) return tl::unexpected(fmt::format("a GLB file has at least 20 bytes, it has {}", bytes.size()));
     if (load_u32(bytes, 4) != 2) return tl::unexpected(fmt::format("it is GLB version {}, only 2 is supported", load_u32(bytes, 4)));
-    if (load_u32(bytes, 8) != bytes.size()) return tl::unexpected(fmt::format("its GLB header says {} bytes, it has {}", load_u32(bytes, 8), bytes.size()));
+    // What follows the length in the header is not part of the GLB.
+    const std::size_t length = load_u32(bytes, 8);
+    if (length < 20 || length > bytes.size()) return tl::unexpected(fmt::format("its GLB header says {} bytes, it has {}", length, bytes.size()));
     constexpr std::uint32_t json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
     if (load_u32(bytes, 16) != json_chunk) return tl::unexpected(std::string("its first GLB chunk is not JSON"));
-    bool binary_seen = false;
-    for (std::size_t at = 12; at < bytes.size();) {
-        if (bytes.size() - at < 8) return tl::unexpected(fmt::format("the GLB chunk header at byte {} is cut off", at));
+    GlbChunks chunks;
+    for (std::size_t at = 12; at < length;) {
+        if (length - at < 8) return tl::unexpected(fmt::format("the GLB chunk header at byte {} is cut off", at));
         const std::uint32_t size = load_u32(bytes, at), type = load_u32(bytes, at + 4);
-        if (size > bytes.size() - at - 8) return tl::unexpected(fmt::format("the GLB chunk at byte {} ends at {}, the file has {} bytes", at, at + 8 + std::uint64_t{size}, bytes.size()));
-        if (at > 12 && (type == json_chunk || (type == binary_chunk && binary_seen))) return tl::unexpected(fmt::format("the GLB chunk at byte {} stands twice", at));
-        binary_seen = binary_seen || type == binary_chunk;
+        if (size > length - at - 8) return tl::unexpected(fmt::format("the GLB chunk at byte {} ends at {}, the GLB has {} bytes", at, at + 8 + std::uint64_t{size}, length));
+        if (at > 12 && (type == json_chunk || (type == binary_chunk && chunks.binary))) return tl::unexpected(fmt::format("the GLB chunk at byte {} stands twice", at));
+        const std::span chunk = std::span(bytes).subspan(at + 8, size);
+        if (type == json_chunk) chunks.json = {reinterpret_cast<const char*>(chunk.data()), chunk.size()};
+        if (type == binary_chunk) chunks.binary = chunk;
         at += 8 + std::size_t{size};
     }
-    return std::string_view(reinterpret_cast<const char*>(&bytes[20]), load_u32(bytes, 12));
+    return chunks;
 }
 
-// tinygltf's callbacks over a FileSource, relative to the document's folder.
+// What tinygltf's callbacks read from.
 struct FileAccess {
-    const FileSource* files;
+    const FileSource& files;
     std::string folder;  // with a slash at its end, or empty
-    std::string missing;  // the first sentence of a file that could not be read
+    const std::vector<OutsideBytes>& outside;
+    std::optional<std::span<const std::uint8_t>> binary_chunk;
+    std::string missing;  // the first sentence on a buffer that could not be read
 };
+
+tl::expected<FileBytes, std::string> read_outside(const FileAccess& access, const OutsideBytes& wanted) {
+    const auto fail = [&](const std::string& why) { return tl::unexpected(fmt::format("{}: {}", wanted.element, why)); };
+    FileBytes bytes;
+    if (wanted.path) {
+        auto read = access.files(access.folder + *wanted.path);
+        if (!read) return fail(read.error());
+        bytes = std::move(*read);
+    } else {
+        if (!access.binary_chunk) return fail("it has no uri, and the file no binary chunk");
+        bytes.assign(access.binary_chunk->begin(), access.binary_chunk->end());
+    }
+    const std::string source = wanted.path ? "'" + *wanted.path + "'" : "the binary chunk";
+    if (bytes.size() > max_file_bytes) return fail(fmt::format("{} has {} bytes, over the limit of {}", source, bytes.size(), max_file_bytes));
+    if (wanted.size_bytes) {
+        if (bytes.size() < *wanted.size_bytes) return fail(fmt::format("{} has {} bytes, byteLength says {}", source, bytes.size(), *wanted.size_bytes));
+        bytes.resize(*wanted.size_bytes);  // it may be longer
+    }
+    return bytes;
+}
 
 bool file_exists(const std::string&, void*) { return true; }
 std::string keep_path(const std::string& path, void*) { return path; }
@@ -49,11 +82,15 @@ bool refuse_write(std::string*, const std::string&, const std::vector<unsigned c
 
 bool read_whole(std::vector<unsigned char>* out, std::string*, const std::string& path, void* user) {
     auto& access = *static_cast<FileAccess*>(user);
-    // tinygltf puts "./" before a path without folder.
-    const std::string name = path.starts_with("./") ? path.substr(2) : path;
-    auto bytes = (*access.files)(access.folder + name);
+    // Uris are places in `outside`; tinygltf may put "./" before one.
+    const std::string_view digits = std::string_view(path).substr(path.starts_with("./") ? 2 : 0);
+    std::size_t place = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), place);
+    if (error != std::errc() || end != digits.data() + digits.size() || place >= access.outside.size()) return false;
+    auto bytes = read_outside(access, access.outside[place]);
     if (!bytes) {
-        if (access.missing.empty()) access.missing = bytes.error();
+        // An image may be missing as long as no material wants it.
+        if (access.outside[place].size_bytes && access.missing.empty()) access.missing = bytes.error();
         return false;
     }
     *out = std::move(*bytes);
@@ -78,44 +115,36 @@ std::string first_line(std::string text) {
 tl::expected<GltfDocument, std::string> load_document(const std::string& path, const FileSource& files) {
     GltfDocument document;
     document.path = path;
-    auto bytes = files(path);
-    if (!bytes) return tl::unexpected(bytes.error());
     const auto fail = [&](const std::string& rest) { return tl::unexpected(document.at(rest)); };
-    if (bytes->size() > max_file_bytes) return fail(fmt::format("it has {} bytes, over the limit of 2 GiB", bytes->size()));
+    if (const auto problem = path_problem(path)) return fail(*problem);
+    const auto bytes = files(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (bytes->size() > max_file_bytes) return fail(fmt::format("it has {} bytes, over the limit of {}", bytes->size(), max_file_bytes));
 
-    const bool binary = bytes->size() >= 4 && std::memcmp(bytes->data(), "glTF", 4) == 0;
-    std::string_view json(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    if (binary) {
-        const auto chunk = glb_json(*bytes);
-        if (!chunk) return fail(chunk.error());
-        json = *chunk;
+    GlbChunks chunks{{reinterpret_cast<const char*>(bytes->data()), bytes->size()}, std::nullopt};
+    if (chunks.json.starts_with("glTF")) {
+        const auto found = glb_chunks(*bytes);
+        if (!found) return fail(found.error());
+        chunks = *found;
     }
-    if (json.find_first_not_of(" \t\r\n") == std::string_view::npos || json[json.find_first_not_of(" \t\r\n")] != '{') {
-        return fail("it is not a glTF file: it begins neither with JSON nor with a GLB header");
-    }
-    const auto summary = check_document(json);
-    if (!summary) return fail(summary.error());
+    const std::size_t first = chunks.json.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos || chunks.json[first] != '{') return fail("it is not a glTF file: it begins neither with JSON nor with a GLB header");
+    const auto checked = check_document(chunks.json);
+    if (!checked) return fail(checked.error());
+    if (checked->json.size() > max_file_bytes) return fail("its JSON is too long");
 
-    FileAccess access{&files, path.find('/') == std::string::npos ? "" : path.substr(0, path.rfind('/') + 1), ""};
+    FileAccess access{files, path.find('/') == std::string::npos ? "" : path.substr(0, path.rfind('/') + 1), checked->outside, chunks.binary, ""};
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keep_encoded_image, nullptr);
     loader.SetFsCallbacks({file_exists, keep_path, read_whole, refuse_write, &access});
     std::string error, warning;
     bool loaded = false;
     try {
-        const auto size = static_cast<unsigned>(bytes->size());
-        loaded = binary ? loader.LoadBinaryFromMemory(&document.model, &error, &warning, bytes->data(), size)
-                        : loader.LoadASCIIFromString(&document.model, &error, &warning, json.data(), size, "");
+        loaded = loader.LoadASCIIFromString(&document.model, &error, &warning, checked->json.data(), static_cast<unsigned>(checked->json.size()), "");
     } catch (const std::exception& exception) {
         error = exception.what();
     }
     if (!loaded) return fail(!access.missing.empty() ? access.missing : "it cannot be loaded: " + first_line(error));
-    for (std::size_t n = 0; n < document.model.buffers.size(); ++n) {
-        // tinygltf warns of a missing file and goes on.
-        if (document.model.buffers[n].data.empty()) {
-            return fail(fmt::format("buffer {} has no bytes{}", n, access.missing.empty() ? "" : ": " + access.missing));
-        }
-    }
     return document;
 }
 

@@ -10,33 +10,57 @@
 namespace drtv::map {
 namespace {
 
+// Where the volumes of each file end in Map::volumes.
+struct FileEnd {
+    std::string path;
+    std::size_t volumes;
+};
+
 // Roles that refer to something must find it.
-Imported check_interiors(const Map& map) {
-    for (const Volume& volume : map.volumes) {
+Imported check_interiors(const Map& map, const std::vector<FileEnd>& ends) {
+    auto end = ends.begin();
+    for (std::size_t n = 0; n < map.volumes.size(); ++n) {
+        while (n >= end->volumes) ++end;
+        const Volume& volume = map.volumes[n];
         if (volume.probe_name.empty()) continue;
-        const auto named = std::count_if(map.probes.begin(), map.probes.end(), [&](const ManualProbe& probe) { return probe.name == volume.probe_name; });
+        const auto named = std::ranges::count(map.probes, volume.probe_name, &ManualProbe::name);
         if (named != 1) {
-            return tl::unexpected(fmt::format("interior '{}': bake_probe names '{}', and the map has {} probe nodes of that name", volume.name, volume.probe_name, named));
+            return tl::unexpected(fmt::format("{}: interior '{}': bake_probe names '{}', and the map has {} probe nodes of that name", end->path, volume.name, volume.probe_name, named));
         }
     }
     return {};
 }
 
-}  // namespace
-
-tl::expected<Map, std::string> import_map(std::span<const std::string> paths, const FileSource& files) {
+tl::expected<Map, std::string> import_files(std::span<const std::string> paths, const FileSource& files) {
     Map map;
     Shared shared;
+    std::vector<FileEnd> ends;
     for (const std::string& path : paths) {
         const auto document = load_document(path, files);
         if (!document) return tl::unexpected(document.error());
+        if (auto checked = check_mesh_sizes(*document); !checked) return tl::unexpected(checked.error());
         const auto materials = import_materials(*document, map, shared);
         if (!materials) return tl::unexpected(materials.error());
         if (auto imported = import_nodes(*document, *materials, map, shared); !imported) return tl::unexpected(imported.error());
+        ends.push_back({path, map.volumes.size()});
     }
-    if (auto checked = check_interiors(map); !checked) return tl::unexpected(checked.error());
+    if (auto checked = check_interiors(map, ends); !checked) return tl::unexpected(checked.error());
     finish_content(map);
     return map;
 }
+
+// One line of sensible length, whatever stands in the names that the file gave.
+std::string as_sentence(std::string text) {
+    constexpr std::size_t max_length = 500;
+    if (text.size() > max_length) text = text.substr(0, max_length) + "...";
+    for (char& c : text) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+    }
+    return text;
+}
+
+}  // namespace
+
+tl::expected<Map, std::string> import_map(std::span<const std::string> paths, const FileSource& files) { return import_files(paths, files).map_error(as_sentence); }
 
 }  // namespace drtv::map

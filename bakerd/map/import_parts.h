@@ -14,7 +14,8 @@ namespace drtv::map {
 
 using Imported = tl::expected<void, std::string>;
 
-// Index into Map::materials of each glTF material of one document; the last one is glTF's default material.
+// Index into Map::materials of each glTF material of one document that some primitive wears (UINT32_MAX of the
+// others); the last one is glTF's default material.
 using MaterialIndices = std::vector<std::uint32_t>;
 
 // Equal things of several documents (or of one) are kept once: digest -> index.
@@ -31,6 +32,9 @@ struct Shared {
 
 [[nodiscard]] tl::expected<MaterialIndices, std::string> import_materials(const GltfDocument& document, Map& map, Shared& shared);
 
+// Whether all primitives together can be read in sensible time and memory.
+[[nodiscard]] Imported check_mesh_sizes(const GltfDocument& document);
+
 // One glTF mesh; an index into Map::meshes, or no_mesh when it has no triangles.
 inline constexpr std::uint32_t no_mesh = UINT32_MAX;
 [[nodiscard]] tl::expected<std::uint32_t, std::string> import_mesh(const GltfDocument& document, std::size_t mesh, const MaterialIndices& materials, Map& map, Shared& shared);
@@ -45,7 +49,10 @@ inline constexpr std::uint32_t no_mesh = UINT32_MAX;
 [[nodiscard]] Digest digest_object(const Object& object, const Map& map);
 [[nodiscard]] Digest digest_volume(const Volume& volume);
 
+[[nodiscard]] Digest digest_light(const Light& light);
+
 // Brings objects, probes, volumes and lights into an order that depends on content only, and digests it all.
+// REQUIRES: each volume's `probe_name` is empty or a probe's.
 void finish_content(Map& map);
 
 }  // namespace drtv::map

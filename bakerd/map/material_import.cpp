@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
+#include <tuple>
 
 namespace drtv::map {
 namespace {
@@ -15,49 +17,58 @@ Wrap wrap_of(int mode) {
     return Wrap::repeat;
 }
 
-// KHR_texture_transform: offset, rotation, scale, in that order around the texture's origin.
+// Far beyond any picture; further out, coordinates would overflow.
+constexpr float max_transform = 1e6f;
+
+// KHR_texture_transform: offset, rotation, scale, in that order around the texture's origin. The document's check
+// saw to the types.
 tl::expected<void, std::string> apply_texture_transform(const tinygltf::Value& extension, Material& material) {
-    double offset[2] = {0, 0}, scale[2] = {1, 1}, rotation = 0;
-    const auto read_pair = [&](const char* name, double (&pair)[2]) {
-        if (!extension.Has(name)) return true;
-        const tinygltf::Value& value = extension.Get(name);
-        if (!value.IsArray() || value.ArrayLen() != 2) return false;
-        for (int k = 0; k < 2; ++k) {
-            if (!value.Get(k).IsNumber()) return false;
-            pair[k] = value.Get(k).GetNumberAsDouble();
-        }
-        return std::isfinite(pair[0]) && std::isfinite(pair[1]);
+    glm::dvec2 offset(0), scale(1);
+    const auto read_pair = [&](const char* name, glm::dvec2& pair) {
+        if (extension.Has(name)) pair = {extension.Get(name).Get(0).GetNumberAsDouble(), extension.Get(name).Get(1).GetNumberAsDouble()};
     };
-    if (!read_pair("offset", offset)) return tl::unexpected(std::string("KHR_texture_transform: offset must be two numbers"));
-    if (!read_pair("scale", scale)) return tl::unexpected(std::string("KHR_texture_transform: scale must be two numbers"));
-    if (extension.Has("rotation")) {
-        if (!extension.Get("rotation").IsNumber()) return tl::unexpected(std::string("KHR_texture_transform: rotation must be a number"));
-        rotation = extension.Get("rotation").GetNumberAsDouble();
-    }
+    read_pair("offset", offset);
+    read_pair("scale", scale);
+    const double rotation = extension.Has("rotation") ? extension.Get("rotation").GetNumberAsDouble() : 0;
     const double c = std::cos(rotation), s = std::sin(rotation);
-    material.texture_u_from_uv = glm::vec3(glm::dvec3(c * scale[0], s * scale[1], offset[0]));
-    material.texture_v_from_uv = glm::vec3(glm::dvec3(-s * scale[0], c * scale[1], offset[1]));
+    material.texture_u_from_uv = glm::vec3(glm::dvec3(c * scale.x, s * scale.y, offset.x));
+    material.texture_v_from_uv = glm::vec3(glm::dvec3(-s * scale.x, c * scale.y, offset.y));
+    for (const glm::vec3& row : {material.texture_u_from_uv, material.texture_v_from_uv}) {
+        for (glm::length_t k = 0; k < 3; ++k) {
+            if (!(std::abs(row[k]) <= max_transform)) return tl::unexpected(fmt::format("KHR_texture_transform: {} is over the limit of {}", row[k], max_transform));
+        }
+    }
     return {};
 }
 
-tl::expected<std::uint32_t, std::string> import_texture(const GltfDocument& document, int texture_index, const std::string& where, Map& map, Shared& shared) {
+// Index into Map::textures of an image with a wrapping, once decoded: many materials may share a picture.
+using Decoded = std::map<std::tuple<int, Wrap, Wrap>, std::uint32_t>;
+
+tl::expected<std::uint32_t, std::string> import_texture(const GltfDocument& document, int texture_index, const std::string& where, Map& map, Shared& shared, Decoded& decoded) {
     const tinygltf::Model& model = document.model;
     const auto fail = [&](const std::string& rest) { return tl::unexpected(document.at(where + ": " + rest)); };
     const tinygltf::Texture& source = model.textures[static_cast<std::size_t>(texture_index)];
     if (source.source < 0) return fail(fmt::format("texture {} has no PNG or JPEG source", texture_index));
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    if (source.sampler >= 0) {
+        const tinygltf::Sampler& sampler = model.samplers[static_cast<std::size_t>(source.sampler)];
+        wrap_u = wrap_of(sampler.wrapS);
+        wrap_v = wrap_of(sampler.wrapT);
+    }
+    const auto known = decoded.find({source.source, wrap_u, wrap_v});
+    if (known != decoded.end()) return known->second;
+
     const tinygltf::Image& image = model.images[static_cast<std::size_t>(source.source)];
-    const std::string image_name = image.uri.empty() ? fmt::format("image {}", source.source) : fmt::format("image {} ('{}')", source.source, image.uri);
+    const std::string image_name = image.name.empty() ? fmt::format("image {}", source.source) : fmt::format("image {} ('{}')", source.source, image.name);
     if (image.image.empty()) return fail(fmt::format("{} has no bytes; is the file missing?", image_name));
     auto texture = decode_texture(image.image);
     if (!texture) return fail(fmt::format("{}: {}", image_name, texture.error()));
-    if (source.sampler >= 0) {
-        const tinygltf::Sampler& sampler = model.samplers[static_cast<std::size_t>(source.sampler)];
-        texture->wrap_u = wrap_of(sampler.wrapS);
-        texture->wrap_v = wrap_of(sampler.wrapT);
-    }
+    texture->wrap_u = wrap_u;
+    texture->wrap_v = wrap_v;
     texture->digest = digest_texture(*texture);
     const auto [entry, added] = shared.textures.try_emplace(texture->digest, static_cast<std::uint32_t>(map.textures.size()));
     if (added) map.textures.push_back(std::move(*texture));
+    decoded.emplace(std::tuple(source.source, wrap_u, wrap_v), entry->second);
     return entry->second;
 }
 
@@ -68,11 +79,28 @@ std::uint32_t keep(Material material, Map& map, Shared& shared) {
     return entry->second;
 }
 
+// Whether some primitive wears each material; a picture missing from one that none wears is no harm.
+std::vector<bool> worn_materials(const tinygltf::Model& model) {
+    std::vector<bool> worn(model.materials.size(), false);
+    for (const tinygltf::Mesh& mesh : model.meshes) {
+        for (const tinygltf::Primitive& primitive : mesh.primitives) {
+            if (primitive.material >= 0) worn[static_cast<std::size_t>(primitive.material)] = true;
+        }
+    }
+    return worn;
+}
+
 }  // namespace
 
 tl::expected<MaterialIndices, std::string> import_materials(const GltfDocument& document, Map& map, Shared& shared) {
     MaterialIndices indices;
+    Decoded decoded;
+    const std::vector<bool> worn = worn_materials(document.model);
     for (std::size_t n = 0; n < document.model.materials.size(); ++n) {
+        if (!worn[n]) {
+            indices.push_back(UINT32_MAX);
+            continue;
+        }
         const tinygltf::Material& source = document.model.materials[n];
         const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
         const std::string where = source.name.empty() ? fmt::format("material {}", n) : fmt::format("material {} ('{}')", n, source.name);
@@ -94,7 +122,7 @@ tl::expected<MaterialIndices, std::string> import_materials(const GltfDocument& 
         }
         material.double_sided = source.doubleSided;
         if (pbr.baseColorTexture.index >= 0) {
-            const auto texture = import_texture(document, pbr.baseColorTexture.index, where, map, shared);
+            const auto texture = import_texture(document, pbr.baseColorTexture.index, where, map, shared, decoded);
             if (!texture) return tl::unexpected(texture.error());
             material.texture = *texture;
             const auto transform = pbr.baseColorTexture.extensions.find("KHR_texture_transform");

@@ -12,6 +12,9 @@ namespace {
 
 using Triangles = std::vector<glm::uvec3>;
 
+// Primitives may share accessors, so that a small file can ask for much; more than 3 GB of unshared ones is no map.
+constexpr std::size_t max_mesh_elements = std::size_t{1} << 28;
+
 // Strips and fans keep the winding as glTF 2.0 (3.7.2.1) gives it.
 Triangles assemble(const std::vector<std::uint32_t>& indices, int mode) {
     Triangles triangles;
@@ -88,7 +91,7 @@ Primitive compact(const Attributes& attributes, Triangles triangles, std::uint32
                 fresh = static_cast<std::uint32_t>(primitive.positions.size());
                 const float* p = &attributes.positions[std::size_t{old} * 3];
                 primitive.positions.push_back(glm::vec3(p[0], p[1], p[2]) + 0.0f);  // no negative zeros
-                if (!attributes.uvs.empty()) primitive.uvs.emplace_back(attributes.uvs[std::size_t{old} * 2], attributes.uvs[std::size_t{old} * 2 + 1]);
+                if (!attributes.uvs.empty()) primitive.uvs.push_back(glm::vec2(attributes.uvs[std::size_t{old} * 2], attributes.uvs[std::size_t{old} * 2 + 1]) + 0.0f);
                 if (!attributes.colours.empty()) {
                     const float* c = &attributes.colours[std::size_t{old} * attributes.colour_components];
                     primitive.colours.emplace_back(glm::clamp(glm::vec4(c[0], c[1], c[2], attributes.colour_components == 4 ? c[3] : 1.0f), 0.0f, 1.0f));
@@ -106,6 +109,7 @@ tl::expected<Primitive, std::string> import_primitive(const GltfDocument& docume
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN) return tl::unexpected(document.at(fmt::format("{}: mode {} is unknown", where, mode)));
     if (mode < TINYGLTF_MODE_TRIANGLES) return Primitive{};  // points and lines block no light
     const std::uint32_t material = source.material < 0 ? materials.back() : materials[static_cast<std::size_t>(source.material)];
+    if (!source.attributes.contains("POSITION")) return Primitive{};  // as the specification says
     const auto attributes = read_attributes(document, source, map.materials[material], where);
     if (!attributes) return tl::unexpected(attributes.error());
 
@@ -125,6 +129,19 @@ tl::expected<Primitive, std::string> import_primitive(const GltfDocument& docume
 }
 
 }  // namespace
+
+Imported check_mesh_sizes(const GltfDocument& document) {
+    const tinygltf::Model& model = document.model;
+    std::size_t elements = 0;
+    for (std::size_t n = 0; n < model.meshes.size(); ++n) {
+        for (const tinygltf::Primitive& primitive : model.meshes[n].primitives) {
+            if (primitive.indices >= 0) elements += model.accessors[static_cast<std::size_t>(primitive.indices)].count;
+            for (const auto& [name, accessor] : primitive.attributes) elements += model.accessors[static_cast<std::size_t>(accessor)].count;
+        }
+        if (elements > max_mesh_elements) return tl::unexpected(document.at(fmt::format("mesh {}: the accessors of all primitives up to it have {} elements, over the limit of {}", n, elements, max_mesh_elements)));
+    }
+    return {};
+}
 
 tl::expected<std::uint32_t, std::string> import_mesh(const GltfDocument& document, std::size_t index, const MaterialIndices& materials, Map& map, Shared& shared) {
     const tinygltf::Mesh& source = document.model.meshes[index];

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace drtv::map {
@@ -19,6 +20,11 @@ namespace {
 const glm::dmat4 world_from_gltf(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
 
 enum class NodeRole { fixed, vegetation, ignore, probe, no_probes, interior };
+
+constexpr double max_distance_m = 1e9;
+// Instancing lets a small file ask for much: objects, vertices that their bounds must visit, and vertices that
+// volumes and flattened meshes copy. All far above any real map.
+constexpr std::size_t max_objects = std::size_t{1} << 22, max_placed_vertices = std::size_t{1} << 32, max_copied_vertices = std::size_t{1} << 26;
 
 struct RoleName {
     const char* name;
@@ -119,7 +125,7 @@ class NodeImporter {
 
     [[nodiscard]] tl::expected<glm::dmat4, std::string> compose(std::size_t index, const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) const {
         const double length = glm::length(rotation);
-        if (!(length > 1e-6)) return fail(index, "its rotation is the zero quaternion");
+        if (!(length > 1e-6 && length < 1e6)) return fail(index, fmt::format("its rotation is a quaternion of length {}", length));
         glm::dmat4 local(glm::mat3_cast(rotation * (1 / length)));
         for (glm::length_t c = 0; c < 3; ++c) local[c] *= scale[c];
         local[3] = glm::dvec4(translation, 1);
@@ -150,7 +156,8 @@ class NodeImporter {
         const tinygltf::Node& node = model_.nodes[pending.node];
         if (auto light = import_light(pending.node, world_from_node); !light) return light;
         if (pending.role == NodeRole::probe) {
-            map_.probes.push_back({glm::dvec3(world_from_node[3]), node.name});
+            if (is_far(world_from_node[3])) return fail_far(pending.node);
+            map_.probes.push_back({glm::dvec3(world_from_node[3]) + 0.0, node.name});  // no negative zeros
             return {};
         }
         if (node.mesh < 0) return {};
@@ -158,14 +165,41 @@ class NodeImporter {
         if (!mesh) return tl::unexpected(mesh.error());
         if (*mesh == no_mesh) return {};
         const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
-        if (instancing == node.extensions.end()) return place(pending, *mesh, world_from_node, node.name);
+        if (instancing == node.extensions.end()) {
+            if (auto counted = count_placed(pending.node, *mesh, 1); !counted) return counted;
+            return place(pending, *mesh, world_from_node, node.name);
+        }
         const auto transforms = instance_transforms(pending.node, instancing->second);
         if (!transforms) return tl::unexpected(transforms.error());
+        if (auto counted = count_placed(pending.node, *mesh, transforms->size()); !counted) return counted;
         for (std::size_t n = 0; n < transforms->size(); ++n) {
             const glm::dmat4 world_from_instance = world_from_node * (*transforms)[n];
             if (!finite(world_from_instance)) return fail(pending.node, fmt::format("the transform of instance {} is not finite", n));
             if (auto placed = place(pending, *mesh, world_from_instance, fmt::format("{}[{}]", node.name, n)); !placed) return placed;
         }
+        return {};
+    }
+
+    static bool is_far(const glm::dvec3& position) { return !(glm::length(position) < max_distance_m); }
+
+    [[nodiscard]] tl::unexpected<std::string> fail_far(std::size_t node) const { return fail(node, "it reaches farther than 10^9 m from the origin"); }
+
+    [[nodiscard]] std::size_t vertices_of(std::uint32_t mesh) const {
+        std::size_t vertices = 0;
+        for (const Primitive& primitive : map_.meshes[mesh].primitives) vertices += primitive.positions.size();
+        return vertices;
+    }
+
+    Imported count_placed(std::size_t node, std::uint32_t mesh, std::size_t instances) {
+        placed_vertices_ += instances * vertices_of(mesh);
+        if (map_.objects.size() + instances > max_objects) return fail(node, fmt::format("with its instances the map has over {} objects, the limit", max_objects));
+        if (placed_vertices_ > max_placed_vertices) return fail(node, fmt::format("with its instances the file places {} vertices, over the limit of {}", placed_vertices_, max_placed_vertices));
+        return {};
+    }
+
+    Imported count_copied(std::size_t node, std::uint32_t mesh) {
+        copied_vertices_ += vertices_of(mesh);
+        if (copied_vertices_ > max_copied_vertices) return fail(node, fmt::format("volumes and flat objects have over {} vertices, the limit", max_copied_vertices));
         return {};
     }
 
@@ -181,8 +215,8 @@ class NodeImporter {
 
     Imported place(const Pending& pending, std::uint32_t mesh, const glm::dmat4& world_from_object, std::string name) {
         if (pending.role == NodeRole::no_probes || pending.role == NodeRole::interior) {
-            add_volume(pending, mesh, world_from_object, std::move(name));
-            return {};
+            if (auto counted = count_copied(pending.node, mesh); !counted) return counted;
+            return add_volume(pending, mesh, world_from_object, std::move(name));
         }
         Object object;
         object.mesh = mesh;
@@ -193,14 +227,16 @@ class NodeImporter {
         const double side = std::max({glm::length(glm::dvec3(world_from_object[0])), glm::length(glm::dvec3(world_from_object[1])), glm::length(glm::dvec3(world_from_object[2]))});
         if (volume <= 1e-9 * side * side * side) {
             // Scaled flat: the inverse that instancing needs does not exist, so the surface gets a mesh of its own.
+            if (auto counted = count_copied(pending.node, mesh); !counted) return counted;
             object.mesh = flattened_mesh(mesh, object.world_from_object);
             object.world_from_object = glm::mat4x3(1);
         }
         for (const Primitive& primitive : map_.meshes[object.mesh].primitives) {
-            for (const glm::vec3& position : primitive.positions) object.bounds.extend(object.world_from_object * glm::vec4(position, 1));
-        }
-        if (!(glm::length(glm::dvec3(object.bounds.low)) < 1e9) || !(glm::length(glm::dvec3(object.bounds.high)) < 1e9)) {
-            return fail(pending.node, "it reaches farther than 10^9 m from the origin");
+            for (const glm::vec3& position : primitive.positions) {
+                const glm::vec3 corner = object.world_from_object * glm::vec4(position, 1);
+                if (is_far(corner)) return fail_far(pending.node);  // NaN is far too, and bounds would not show it
+                object.bounds.extend(corner);
+            }
         }
         object.digest = digest_object(object, map_);
         map_.objects.push_back(std::move(object));
@@ -212,7 +248,7 @@ class NodeImporter {
         flat.bounds = {};
         for (Primitive& primitive : flat.primitives) {
             for (glm::vec3& position : primitive.positions) {
-                position = world_from_object * glm::vec4(position, 1);
+                position = world_from_object * glm::vec4(position, 1) + 0.0f;
                 flat.bounds.extend(position);
             }
             primitive.digest = digest_primitive(primitive, map_);
@@ -223,30 +259,32 @@ class NodeImporter {
         return entry->second;
     }
 
-    void add_volume(const Pending& pending, std::uint32_t mesh, const glm::dmat4& world_from_object, std::string name) {
+    Imported add_volume(const Pending& pending, std::uint32_t mesh, const glm::dmat4& world_from_object, std::string name) {
         Volume volume;
         volume.kind = pending.role == NodeRole::interior ? VolumeKind::interior : VolumeKind::no_probes;
         volume.probe_name = volume.kind == VolumeKind::interior ? pending.bake_probe : "";
         volume.name = std::move(name);
         for (const Primitive& primitive : map_.meshes[mesh].primitives) {
             const auto first = static_cast<std::uint32_t>(volume.positions.size());
-            for (const glm::vec3& position : primitive.positions) volume.positions.emplace_back(world_from_object * glm::dvec4(position, 1));
+            for (const glm::vec3& position : primitive.positions) {
+                volume.positions.emplace_back(glm::dvec3(world_from_object * glm::dvec4(position, 1)) + 0.0);
+                if (is_far(volume.positions.back())) return fail_far(pending.node);
+            }
             for (const glm::uvec3& triangle : primitive.triangles) volume.triangles.push_back(triangle + first);
         }
         volume.digest = digest_volume(volume);
         map_.volumes.push_back(std::move(volume));
+        return {};
     }
 
     tl::expected<std::vector<glm::dmat4>, std::string> instance_transforms(std::size_t node, const tinygltf::Value& extension) const {
         std::vector<float> translations, rotations, scales;
         std::size_t count = SIZE_MAX;
-        if (!extension.Has("attributes") || !extension.Get("attributes").IsObject()) return fail(node, "EXT_mesh_gpu_instancing has no attributes");
+        // The document's check saw to the types.
         const tinygltf::Value& attributes = extension.Get("attributes");
         const auto read = [&](const char* name, std::size_t components, std::vector<float>& out) -> Imported {
             if (!attributes.Has(name)) return {};
-            const tinygltf::Value& value = attributes.Get(name);
-            if (!value.IsInt() || value.GetNumberAsInt() < 0 || static_cast<std::size_t>(value.GetNumberAsInt()) >= model_.accessors.size()) return fail(node, fmt::format("EXT_mesh_gpu_instancing: {} names no accessor", name));
-            auto values = read_floats(document_, value.GetNumberAsInt(), components);
+            auto values = read_floats(document_, attributes.Get(name).GetNumberAsInt(), components);
             if (!values) return tl::unexpected(values.error());
             out = std::move(*values);
             const std::size_t elements = out.size() / components;
@@ -273,10 +311,7 @@ class NodeImporter {
     Imported import_light(std::size_t index, const glm::dmat4& world_from_node) {
         const auto found = model_.nodes[index].extensions.find("KHR_lights_punctual");
         if (found == model_.nodes[index].extensions.end()) return {};
-        const tinygltf::Value& reference = found->second;
-        if (!reference.Has("light") || !reference.Get("light").IsInt()) return fail(index, "KHR_lights_punctual names no light");
-        const int number = reference.Get("light").GetNumberAsInt();
-        if (number < 0 || static_cast<std::size_t>(number) >= model_.lights.size()) return fail(index, fmt::format("light {} does not exist, the file has {}", number, model_.lights.size()));
+        const int number = found->second.Get("light").GetNumberAsInt();  // checked with the document
         const tinygltf::Light& source = model_.lights[static_cast<std::size_t>(number)];
         Light light;
         if (source.type == "spot") light.kind = LightKind::spot;
@@ -289,7 +324,14 @@ class NodeImporter {
             light.inner_cone_radians = static_cast<float>(source.spot.innerConeAngle);
             light.outer_cone_radians = static_cast<float>(source.spot.outerConeAngle);
         }
-        if (!(light.intensity >= 0) || !std::isfinite(light.intensity) || !(light.range_m >= 0)) return fail(index, fmt::format("light {}: intensity {} or range {} is not valid", number, light.intensity, light.range_m));
+        const float values[] = {light.colour.x, light.colour.y, light.colour.z, light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians};
+        for (float value : values) {
+            if (!(value >= 0 && std::isfinite(value))) return fail(index, fmt::format("light {}: {} is not a colour, an intensity, a range or an angle", number, value));
+        }
+        if (light.inner_cone_radians > light.outer_cone_radians || light.outer_cone_radians > std::numbers::pi_v<float> / 2) {
+            return fail(index, fmt::format("light {}: cone angles {} and {} do not lie one in the other and below pi/2", number, light.inner_cone_radians, light.outer_cone_radians));
+        }
+        if (is_far(world_from_node[3])) return fail_far(index);
         light.position = glm::vec3(world_from_node[3]);
         const glm::dvec3 shines = -glm::dvec3(world_from_node[2]);  // along the node's -z
         light.direction = glm::length(shines) > 0 ? glm::vec3(glm::normalize(shines)) : glm::vec3(0, 0, -1);
@@ -304,6 +346,7 @@ class NodeImporter {
     Map& map_;
     Shared& shared_;
     std::vector<std::optional<std::uint32_t>> mesh_of_;  // by glTF mesh, once imported
+    std::size_t placed_vertices_ = 0, copied_vertices_ = 0;
 };
 
 }  // namespace

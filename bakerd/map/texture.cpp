@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -50,8 +51,8 @@ glm::vec4 texel(const Texture& texture, std::uint32_t x, std::uint32_t y) {
     return {linear_from_srgb[p[0]], linear_from_srgb[p[1]], linear_from_srgb[p[2]], static_cast<float>(p[3]) / 255.0f};
 }
 
-// Beyond this a float holds no position inside the texture any more.
-float bounded(float v) { return v > 1e6f ? 1e6f : v < -1e6f ? -1e6f : v; }
+// Beyond this a float holds no position inside the texture any more. What is no number lands there too.
+float bounded(float v) { return v > -1e6f ? std::min(v, 1e6f) : -1e6f; }
 
 }  // namespace
 

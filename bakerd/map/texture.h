@@ -13,7 +13,7 @@ namespace drtv::map {
 // Decodes PNG or JPEG into an RGBA texture (wrapping left at repeat, digest empty). Sentence on failure.
 [[nodiscard]] tl::expected<Texture, std::string> decode_texture(std::span<const std::uint8_t> encoded);
 
-// Bilinear sample at uv: linear colour, alpha in w. Any finite uv is fine.
+// Bilinear sample at uv: linear colour, alpha in w. Any uv is safe.
 [[nodiscard]] glm::vec4 sample(const Texture& texture, glm::vec2 uv);
 
 }  // namespace drtv::map

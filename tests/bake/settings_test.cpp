@@ -17,7 +17,7 @@ TEST(Settings, ValuesOutOfRangeAreRefusedAndChangeNothing) {
     Settings settings;
     const Settings before = settings;
     for (const auto& [key, value] : {std::pair("rays", "15"), std::pair("rays", "65537"), std::pair("rays", "-1"), std::pair("rays", "1e3"), std::pair("bounces", "9"), std::pair("reach", "0.5"), std::pair("reach", "nan"),
-                                     std::pair("reach", "inf"), std::pair("min_distance", "65"), std::pair("min_distance", ""), std::pair("lprt", "1"), std::pair("reach", "12m")}) {
+                                     std::pair("reach", "inf"), std::pair("min_distance", "16.5"), std::pair("min_distance", ""), std::pair("lprt", "1"), std::pair("reach", "12m")}) {
         const auto result = set(settings, key, value);
         ASSERT_FALSE(result) << key << "=" << value;
         EXPECT_NE(result.error().find(key), std::string::npos);

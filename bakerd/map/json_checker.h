@@ -1,0 +1,64 @@
+// Typed looks at a JSON document: what an element must hold, and what it may refer to.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace drtv::map {
+
+using Json = nlohmann::json;
+using Failure = std::optional<std::string>;  // nothing: fine
+
+enum class Type { number, index, count, string, boolean, object, index_array, number_array };
+
+struct Property {
+    const char* name;
+    Type type;
+    bool required = false;
+    std::size_t length = 0;           // arrays: exact number of elements, 0: any
+    const char* refers_to = nullptr;  // index or index_array: the top-level array it points into
+};
+
+// A short form of the value for a message.
+[[nodiscard]] std::string shown(const Json& value);
+
+// Checks parts of a document, and writes the numbers that it has checked as tinygltf wants them: it skips an index
+// written as 3.0, and cuts large whole numbers in extensions to 32 bits.
+class Checker {
+  public:
+    explicit Checker(Json& root) : root_(root) {}
+
+    [[nodiscard]] Failure properties(Json& object, const std::string& where, std::initializer_list<Property> properties) const;
+
+    // Each member of `attributes` names an accessor.
+    [[nodiscard]] Failure accessors_of(Json& attributes, const std::string& where) const;
+
+    // Runs `check(element, "node 3")` over a top-level array.
+    template <class Check>
+    [[nodiscard]] Failure each(const char* array, const char* singular, Check check) const {
+        const auto found = root_.find(array);
+        if (found == root_.end()) return {};
+        if (!found->is_array()) return fmt::format("{} must be an array", array);
+        for (std::size_t n = 0; n < found->size(); ++n) {
+            if (Failure failure = check((*found)[n], fmt::format("{} {}", singular, n))) return failure;
+        }
+        return {};
+    }
+
+    // REQUIRES: `index` was checked to refer to the array.
+    [[nodiscard]] const Json& element(const char* array, const Json& index) const { return root_[array][index.get<std::size_t>()]; }
+
+  private:
+    [[nodiscard]] std::size_t size_of(const char* array) const;
+    [[nodiscard]] Failure references(const Json& value, const std::string& where, const char* array) const;
+
+    Json& root_;
+};
+
+}  // namespace drtv::map

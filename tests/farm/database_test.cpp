@@ -1,0 +1,187 @@
+#include "bakerd/farm/database.h"
+#include "tests/farm/temporary_folder.h"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace drtv::farm {
+namespace {
+
+Digest digest_of(const std::string& text) { return map::digest_of(test::bytes_of(text)); }
+
+class DatabaseTest : public testing::Test {
+  protected:
+    DatabaseTest() : database(std::move(*Database::open(path))) {}
+
+    void reopen() {
+        database.reset();
+        database = std::move(*Database::open(path));
+    }
+
+    JobRow add_job(const std::string& request_id = "") {
+        JobRow job;
+        job.request_id = request_id;
+        job.manifest = digest_of("map");
+        job.preset = "draft";
+        job.settings.rays = 99;
+        job.overrides = R"({"rays":"99"})";
+        job.region = "[0,0,1,1]";
+        job.sectors_cached = 4;
+        job.created_seconds = 1000;
+        EXPECT_TRUE(database->insert_job(job));
+        return job;
+    }
+
+    TaskRow add_task(std::int32_t i, std::int32_t j, TaskState state = TaskState::pending) {
+        TaskRow task;
+        task.key = digest_of(std::to_string(i) + "," + std::to_string(j));
+        task.manifest = digest_of("map");
+        task.sector = {i, j};
+        task.settings.reach_m = 0.3f;
+        task.state = state;
+        task.result = {digest_of("result"), 100, 10, 1LL << 40};
+        task.error = "it's \"bad\"";
+        task.failed_attempts = 2;
+        EXPECT_TRUE(database->insert_task(task));
+        return task;
+    }
+
+    test::TemporaryFolder folder;
+    const std::string path = folder.path() + "/farm.sqlite";
+    std::unique_ptr<Database> database;
+};
+
+TEST_F(DatabaseTest, AReopenedFileHasAllOfIt) {
+    JobRow job = add_job("request"), other = add_job();
+    const TaskRow task = add_task(-3, 5, TaskState::failed);
+    EXPECT_GT(other.id, job.id);
+    ASSERT_TRUE(database->add_job_task(job.id, task.id));
+    ASSERT_TRUE(database->put_map(digest_of("map"), {digest_of("content"), {{1, 2}}, 3, 4, {"warned"}}));
+    job.state = JobState::failed;
+    job.error = "reason";
+    job.ended_seconds = 2000;
+    ASSERT_TRUE(database->update_job(job));
+    reopen();
+
+    const auto jobs = database->jobs().value();
+    ASSERT_EQ(jobs.size(), 2u);
+    EXPECT_EQ(jobs[0].id, job.id);
+    EXPECT_EQ(jobs[0].request_id, "request");
+    EXPECT_EQ(jobs[0].manifest, job.manifest);
+    EXPECT_EQ(jobs[0].preset, "draft");
+    EXPECT_EQ(jobs[0].settings, job.settings);
+    EXPECT_EQ(jobs[0].overrides, job.overrides);
+    EXPECT_EQ(jobs[0].region, job.region);
+    EXPECT_EQ(jobs[0].state, JobState::failed);
+    EXPECT_EQ(jobs[0].error, "reason");
+    EXPECT_EQ(std::tuple(jobs[0].sectors_cached, jobs[0].created_seconds, jobs[0].ended_seconds), std::tuple(4, 1000, 2000));
+    EXPECT_EQ(jobs[1].request_id, "");
+
+    const auto read = database->task_by_key(task.key).value();
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->id, task.id);
+    EXPECT_EQ(read->manifest, task.manifest);
+    EXPECT_EQ(read->sector, task.sector);
+    EXPECT_EQ(read->settings, task.settings);
+    EXPECT_EQ(read->state, TaskState::failed);
+    EXPECT_EQ(read->failed_attempts, 2);
+    EXPECT_EQ(read->result.result, task.result.result);
+    EXPECT_EQ(std::tuple(read->result.size_bytes, read->result.probes, read->result.rays), std::tuple(100, 10, 1LL << 40));
+    EXPECT_EQ(read->error, task.error);
+
+    const auto summary = database->map(digest_of("map")).value();
+    ASSERT_TRUE(summary);
+    EXPECT_EQ(summary->content, digest_of("content"));
+    EXPECT_EQ(summary->warnings, std::vector<std::string>{"warned"});
+    EXPECT_FALSE(database->map(digest_of("other map")).value());
+    EXPECT_FALSE(database->task_by_key(digest_of("other key")).value());
+}
+
+TEST_F(DatabaseTest, TasksOfAJobComeByRowThenColumnInPages) {
+    const JobRow job = add_job(), other = add_job();
+    for (std::int32_t n = 0; n < 9; ++n) {
+        const TaskRow task = add_task(1 - n % 3, 1 - n / 3, n < 5 ? TaskState::done : TaskState::failed);
+        ASSERT_TRUE(database->add_job_task(job.id, task.id));
+        if (n == 0) {
+            ASSERT_TRUE(database->add_job_task(other.id, task.id));
+        }
+    }
+    std::vector<map::SectorCoordinate> seen;
+    for (std::int64_t first = 0; first < 12; first += 4) {
+        const std::vector<TaskRow> page = database->job_tasks(job.id, first, 4).value();
+        for (const TaskRow& task : page) seen.push_back(task.sector);
+    }
+    EXPECT_EQ(seen, (std::vector<map::SectorCoordinate>{{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}));
+    EXPECT_TRUE(database->job_tasks(job.id, INT64_MAX, 4).value().empty());
+    const JobCounts counts = database->job_counts(job.id).value();
+    EXPECT_EQ(std::tuple(counts.total, counts.done, counts.failed, counts.probes), std::tuple(9, 5, 4, 90));
+    EXPECT_EQ(database->job_counts(other.id)->total, 1);
+    EXPECT_EQ(database->job_counts(77)->total, 0);
+    EXPECT_TRUE(database->job_task(job.id, {0, 0}).value());
+    EXPECT_FALSE(database->job_task(other.id, {0, 0}).value());
+}
+
+TEST_F(DatabaseTest, ATransactionThatFailsLeavesNothing) {
+    const auto failed = database->transaction([&]() -> Result<void> {
+        add_job();
+        add_task(0, 0);
+        return fail(ErrorCode::aborted, "changed my mind");
+    });
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(failed.error().message, "changed my mind");
+    EXPECT_TRUE(database->jobs()->empty());
+    EXPECT_FALSE(database->task_by_key(digest_of("0,0")).value());
+    // And the next one works.
+    EXPECT_TRUE(database->transaction([&]() -> Result<void> { return add_job(), Result<void>(); }));
+    reopen();
+    EXPECT_EQ(database->jobs()->size(), 1u);
+}
+
+TEST_F(DatabaseTest, ARequestIdNamesOneJob) {
+    add_job("same");
+    add_job();
+    add_job();
+    JobRow second;
+    second.request_id = "same";
+    const auto inserted = database->insert_job(second);
+    ASSERT_FALSE(inserted);
+    EXPECT_NE(inserted.error().message.find("UNIQUE"), std::string::npos) << inserted.error().message;
+    EXPECT_EQ(database->jobs()->size(), 3u);
+}
+
+TEST_F(DatabaseTest, AKeyNamesOneTask) {
+    add_task(1, 1);
+    TaskRow second;
+    second.key = digest_of("1,1");
+    EXPECT_FALSE(database->insert_task(second));
+}
+
+TEST_F(DatabaseTest, ANewerSchemaIsRefusedAndLeftAlone) {
+    database.reset();
+    sqlite3* handle = nullptr;
+    ASSERT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(handle, "PRAGMA user_version=999", nullptr, nullptr, nullptr), SQLITE_OK);
+    sqlite3_close(handle);
+    for (int n = 0; n < 2; ++n) {
+        const auto opened = Database::open(path);
+        ASSERT_FALSE(opened);
+        EXPECT_EQ(opened.error().code, ErrorCode::failed_precondition);
+        EXPECT_NE(opened.error().message.find("999"), std::string::npos) << opened.error().message;
+    }
+}
+
+TEST(Database, AFileThatIsNoDatabaseOrCannotBeMadeIsASentence) {
+    const test::TemporaryFolder folder;
+    test::write_file(folder.path() + "/text", std::string(5000, 'x'));
+    for (const std::string& path : {folder.path() + "/text", folder.path() + "/no/such/folder", folder.path()}) {
+        const auto opened = Database::open(path);
+        ASSERT_FALSE(opened) << path;
+        EXPECT_GT(opened.error().message.size(), 20u);
+    }
+}
+
+}  // namespace
+}  // namespace drtv::farm

@@ -1,0 +1,245 @@
+#include "bakerd/farm/local_executor.h"
+#include "tests/farm/fake_worker.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <ctime>
+#include <set>
+
+namespace drtv::farm {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fake = test::fake;
+
+constexpr auto long_enough = 20s;
+
+// A queue of sectors before the executor and a book of their outcomes behind it.
+class LocalExecutorTest : public testing::Test {
+  protected:
+    LocalExecutorTest() { std::signal(SIGPIPE, SIG_IGN); }
+
+    void start(std::vector<std::string> command, int threads = 2) {
+        LocalExecutor::Callbacks callbacks;
+        callbacks.next = [this]() -> std::optional<BakeRequest> {
+            const std::lock_guard lock(mutex);
+            if (queue.empty()) return std::nullopt;
+            const BakeRequest request = queue.front();
+            queue.pop_front();
+            return request;
+        };
+        callbacks.finished = [this](std::uint64_t id, int failed_attempts, Outcome outcome) {
+            const std::lock_guard lock(mutex);
+            EXPECT_TRUE(outcomes.emplace(id, std::pair(failed_attempts, std::move(outcome))).second) << id << " finished twice";
+            changed.notify_all();
+        };
+        executor = std::make_unique<LocalExecutor>(LocalExecutor::Options{std::move(command), threads}, std::move(callbacks));
+    }
+    void start_fake(const std::string& mode, int threads = 2) { start({DRTV_FAKE_WORKER, mode}, threads); }
+
+    // A sector that the worker treats so; its id is its place in the order of adding, from 0.
+    void add(std::int32_t behaviour) {
+        const std::lock_guard lock(mutex);
+        const auto id = static_cast<std::uint64_t>(added++);
+        queue.push_back({id, {}, {behaviour, static_cast<std::int32_t>(id)}, {}});
+    }
+
+    bool wait_for_all() {
+        executor->wake();
+        std::unique_lock lock(mutex);
+        return changed.wait_for(lock, long_enough, [&] { return outcomes.size() == added; });
+    }
+
+    void expect_baked(std::uint64_t id) {
+        const auto* baked = std::get_if<BakeAnswer>(&outcomes.at(id).second);
+        ASSERT_NE(baked, nullptr) << "sector " << id;
+        EXPECT_EQ(baked->probes, static_cast<std::int64_t>(id));
+    }
+    void expect_failed(std::uint64_t id, int attempts, const std::string& with) {
+        const auto* failure = std::get_if<FailureAnswer>(&outcomes.at(id).second);
+        ASSERT_NE(failure, nullptr) << "sector " << id;
+        EXPECT_EQ(outcomes.at(id).first, attempts);
+        EXPECT_NE(failure->sentence.find(with), std::string::npos) << failure->sentence;
+    }
+
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::deque<BakeRequest> queue;                                 // guarded by mutex
+    std::map<std::uint64_t, std::pair<int, Outcome>> outcomes;     // guarded by mutex
+    std::size_t added = 0;                                         // guarded by mutex
+    std::unique_ptr<LocalExecutor> executor;  // last: its thread uses the above
+};
+
+TEST_F(LocalExecutorTest, SectorsAreBakedAndEachAnswerFindsItsOwn) {
+    start_fake("normal");
+    for (int n = 0; n < 200; ++n) add(fake::good);
+    ASSERT_TRUE(wait_for_all());
+    for (std::uint64_t id = 0; id < 200; ++id) expect_baked(id);
+    for (int n = 0; n < 5; ++n) add(fake::good);  // and again after a rest
+    EXPECT_TRUE(wait_for_all());
+}
+
+TEST_F(LocalExecutorTest, AnswersMayComeInAnyOrder) {
+    start({DRTV_FAKE_WORKER, "reverse", "6"}, 4);
+    for (int n = 0; n < 60; ++n) add(fake::good);
+    ASSERT_TRUE(wait_for_all());
+    for (std::uint64_t id = 0; id < 60; ++id) expect_baked(id);
+}
+
+TEST_F(LocalExecutorTest, ASectorThatKillsTheWorkerFailsAloneAfterThreeAttempts) {
+    start_fake("normal", 4);
+    for (int n = 0; n < 40; ++n) add(n == 7 || n == 8 || n == 30 ? fake::deadly : fake::good);
+    ASSERT_TRUE(wait_for_all());
+    for (std::uint64_t id = 0; id < 40; ++id) {
+        if (id == 7 || id == 8 || id == 30) expect_failed(id, max_attempts, "signal 9");
+        else expect_baked(id);
+    }
+}
+
+TEST_F(LocalExecutorTest, AWorkerThatQuitsSaysItsStatus) {
+    start_fake("normal");
+    add(fake::quits);
+    ASSERT_TRUE(wait_for_all());
+    expect_failed(0, max_attempts, "status 3");
+}
+
+TEST_F(LocalExecutorTest, ARetryableFailureIsTriedAgainAndAHopelessOneIsNot) {
+    start_fake("normal");
+    add(fake::fails_once);
+    add(fake::always_later);
+    add(fake::hopeless);
+    add(fake::good);
+    ASSERT_TRUE(wait_for_all());
+    expect_baked(0);
+    EXPECT_EQ(outcomes.at(0).first, 1);
+    expect_failed(1, max_attempts, "the disk is full");
+    expect_failed(2, 0, "the sector is bad");
+    expect_baked(3);
+}
+
+TEST_F(LocalExecutorTest, AnswersToNobodyAreIgnored) {
+    start_fake("normal");
+    for (int n = 0; n < 10; ++n) add(n % 2 == 0 ? fake::unknown_id : fake::twice);
+    ASSERT_TRUE(wait_for_all());
+    for (std::uint64_t id = 0; id < 10; ++id) expect_baked(id);
+}
+
+TEST_F(LocalExecutorTest, AWorkerThatNeverLivesFailsEachSectorWithAReason) {
+    for (const auto& [mode, reason] : {std::pair("die_at_start", "status 4"), std::pair("garbage", "signal 9"), std::pair("close_output", "signal 9")}) {
+        start_fake(mode);
+        added = 0;
+        outcomes.clear();
+        for (int n = 0; n < 5; ++n) add(fake::good);
+        ASSERT_TRUE(wait_for_all()) << mode;
+        for (std::uint64_t id = 0; id < 5; ++id) expect_failed(id, max_attempts, reason);
+        executor.reset();
+    }
+}
+
+TEST_F(LocalExecutorTest, AWorkerThatCannotBeStartedIsSaid) {
+    start({"/no/such/program"});
+    add(fake::good);
+    ASSERT_TRUE(wait_for_all());
+    expect_failed(0, max_attempts, "no worker could be started");
+}
+
+TEST_F(LocalExecutorTest, InspectionsAreAnsweredWhileSectorsWait) {
+    start_fake("normal");
+    for (int n = 0; n < 50; ++n) add(fake::good);
+    executor->wake();
+    map::Digest manifest;
+    manifest.bytes[5] = 77;
+    auto answer = executor->inspect(manifest);
+    ASSERT_EQ(answer.wait_for(long_enough), std::future_status::ready);
+    const Outcome outcome = answer.get();
+    ASSERT_TRUE(std::holds_alternative<InspectAnswer>(outcome));
+    EXPECT_EQ(std::get<InspectAnswer>(outcome).content, manifest);
+    EXPECT_TRUE(wait_for_all());
+}
+
+TEST_F(LocalExecutorTest, AMapThatKillsTheWorkerFailsWithAReason) {
+    start_fake("normal");
+    map::Digest manifest;
+    manifest.bytes[0] = fake::deadly_map;
+    for (int n = 0; n < 10; ++n) add(fake::good);
+    auto answer = executor->inspect(manifest);
+    ASSERT_EQ(answer.wait_for(long_enough), std::future_status::ready);
+    const Outcome outcome = answer.get();
+    ASSERT_TRUE(std::holds_alternative<FailureAnswer>(outcome));
+    EXPECT_NE(std::get<FailureAnswer>(outcome).sentence.find("signal 9"), std::string::npos);
+    ASSERT_TRUE(wait_for_all());
+    for (std::uint64_t id = 0; id < 10; ++id) expect_baked(id);
+}
+
+TEST_F(LocalExecutorTest, AnInspectionThatMustWaitCostsNoTime) {
+    start_fake("normal", 1);
+    for (int n = 0; n < 3; ++n) add(fake::silent);  // the window is full, for ever
+    executor->wake();
+    std::this_thread::sleep_for(300ms);
+    auto answer = executor->inspect({});
+    const std::clock_t before = std::clock();
+    EXPECT_EQ(answer.wait_for(500ms), std::future_status::timeout);
+    EXPECT_LT(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC, 0.1);  // 0.2 to 0.5 when the thread spins
+    executor.reset();
+    EXPECT_EQ(answer.wait_for(0s), std::future_status::ready);
+}
+
+TEST_F(LocalExecutorTest, TheDestructorAnswersPendingInspections) {
+    start_fake("normal", 1);
+    map::Digest silent;
+    silent.bytes[0] = fake::silent_map;
+    std::vector<std::future<Outcome>> answers;
+    for (int n = 0; n < 6; ++n) answers.push_back(executor->inspect(silent));
+    std::this_thread::sleep_for(100ms);
+    executor.reset();
+    for (auto& answer : answers) {
+        ASSERT_EQ(answer.wait_for(0s), std::future_status::ready);
+        const Outcome outcome = answer.get();
+        ASSERT_TRUE(std::holds_alternative<FailureAnswer>(outcome));
+        EXPECT_EQ(std::get<FailureAnswer>(outcome).sentence, "the server is stopping");
+        EXPECT_TRUE(std::get<FailureAnswer>(outcome).may_retry);
+    }
+}
+
+TEST_F(LocalExecutorTest, DrainWaitsForWhatIsInFlightAndStartsNothing) {
+    start_fake("normal", 1);
+    for (int n = 0; n < 20; ++n) add(fake::slow);
+    executor->wake();
+    std::this_thread::sleep_for(150ms);
+    executor->drain(10s);
+    const std::lock_guard lock(mutex);
+    EXPECT_EQ(outcomes.size(), 3u);  // the window
+    EXPECT_EQ(queue.size(), 17u);
+    auto refused = executor->inspect({});
+    ASSERT_EQ(refused.wait_for(0s), std::future_status::ready);
+}
+
+TEST_F(LocalExecutorTest, DrainRightAfterAWakeLosesNothing) {
+    for (int round = 0; round < 30; ++round) {
+        start_fake("normal", 2);
+        for (int n = 0; n < 8; ++n) add(fake::good);
+        executor->wake();
+        std::this_thread::sleep_for(std::chrono::microseconds(100 * round));
+        executor->drain(10s);
+        executor.reset();
+        EXPECT_EQ(outcomes.size() + queue.size(), added) << "in flight after drain";
+        queue.clear();
+        added = outcomes.size();
+    }
+}
+
+TEST_F(LocalExecutorTest, DrainGivesUpAfterItsPatience) {
+    start_fake("normal");
+    add(fake::silent);
+    executor->wake();
+    std::this_thread::sleep_for(100ms);
+    const auto before = std::chrono::steady_clock::now();
+    executor->drain(200ms);
+    EXPECT_GE(std::chrono::steady_clock::now() - before, 190ms);
+    executor.reset();
+    EXPECT_TRUE(outcomes.empty());  // not reported: put back
+}
+
+}  // namespace
+}  // namespace drtv::farm

@@ -1,0 +1,33 @@
+// A folder for one test, gone with it, and bytes to fill it with.
+#pragma once
+
+#include <cstdint>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace drtv::test {
+
+class TemporaryFolder {
+  public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+  private:
+    std::string path_;
+};
+
+[[nodiscard]] std::vector<std::uint8_t> bytes_of(std::string_view text);
+// Differ for each seed.
+[[nodiscard]] std::vector<std::uint8_t> noise(std::size_t size, std::uint32_t seed);
+
+// Below the folder, at any depth.
+[[nodiscard]] std::size_t files_below(const std::string& folder);
+void write_file(const std::string& path, std::string_view text);
+
+}  // namespace drtv::test

@@ -1,0 +1,85 @@
+#include "bakerd/farm/worker_protocol.h"
+#include "tests/farm/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+namespace drtv::farm {
+namespace {
+
+const map::Digest some_digest = map::digest_of(test::bytes_of("some"));
+
+BakeRequest bake_request() { return {UINT64_MAX, some_digest, {-16384, 16384}, {.rays = 17, .bounces = 0, .reach_m = 0.1f, .min_distance_m = 64}}; }
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+    const std::size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what << " in " << text;
+    return text.replace(at, what.size(), with);
+}
+
+TEST(WorkerProtocol, RequestsComeBackAsTheyWere) {
+    const auto bake = std::get<BakeRequest>(decode_request(encode(WorkerRequest(bake_request()))).value());
+    EXPECT_EQ(bake.id, UINT64_MAX);
+    EXPECT_EQ(bake.manifest, some_digest);
+    EXPECT_EQ(bake.sector, (map::SectorCoordinate{-16384, 16384}));
+    EXPECT_EQ(bake.settings, bake_request().settings);  // the float to its last bit
+    const auto inspect = std::get<InspectRequest>(decode_request(encode(WorkerRequest(InspectRequest{3, some_digest}))).value());
+    EXPECT_EQ(inspect.id, 3u);
+    EXPECT_EQ(inspect.manifest, some_digest);
+}
+
+TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
+    const auto round = [](decltype(WorkerAnswer::what) what) {
+        const std::string text = encode(WorkerAnswer{9, std::move(what)});
+        EXPECT_EQ(text.find('\n'), std::string::npos);
+        const auto answer = decode_answer(text);
+        EXPECT_EQ(answer.value().id, 9u);
+        return answer->what;
+    };
+    const auto baked = std::get<BakeAnswer>(round(BakeAnswer{some_digest, 15000, 70, 1LL << 40}));
+    EXPECT_EQ(std::tuple(baked.result, baked.size_bytes, baked.probes, baked.rays), std::tuple(some_digest, 15000, 70, 1LL << 40));
+    const auto failure = std::get<FailureAnswer>(round(FailureAnswer{"two\nlines, \"quotes\"", true}));
+    EXPECT_EQ(failure.sentence, "two\nlines, \"quotes\"");
+    EXPECT_TRUE(failure.may_retry);
+    const auto inspected = std::get<InspectAnswer>(round(InspectAnswer{some_digest, {{1, -2}, {3, 4}}, 5, 6, {"warned"}}));
+    EXPECT_EQ(inspected.content, some_digest);
+    EXPECT_EQ(inspected.sectors, (std::vector<map::SectorCoordinate>{{1, -2}, {3, 4}}));
+    EXPECT_EQ(std::tuple(inspected.object_count, inspected.triangle_count), std::tuple(5, 6));
+    EXPECT_EQ(inspected.warnings, std::vector<std::string>{"warned"});
+}
+
+TEST(WorkerProtocol, ASentenceThatIsNotUtf8IsStillALine) {
+    const auto answer = decode_answer(encode(WorkerAnswer{1, FailureAnswer{"broken \xff\xfe", false}}));
+    ASSERT_TRUE(answer);
+    EXPECT_TRUE(std::get<FailureAnswer>(answer->what).sentence.starts_with("broken "));
+}
+
+TEST(WorkerProtocol, GarbageIsNothing) {
+    const std::string request = encode(WorkerRequest(bake_request())), answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3}});
+    for (std::size_t size = 0; size < request.size(); ++size) EXPECT_FALSE(decode_request(request.substr(0, size))) << size;
+    for (std::size_t size = 0; size < answer.size(); ++size) EXPECT_FALSE(decode_answer(answer.substr(0, size))) << size;
+    for (const std::string& odd : {std::string(), std::string("null"), std::string("[]"), std::string("7"), std::string("{}"), std::string(R"({"id":1})"), std::string("\xff"), std::string("\0", 1), std::string(100000, '[')}) {
+        EXPECT_FALSE(decode_request(odd)) << odd.substr(0, 20);
+        EXPECT_FALSE(decode_answer(odd)) << odd.substr(0, 20);
+    }
+    EXPECT_FALSE(decode_request(request + "x"));
+    EXPECT_FALSE(decode_answer(answer + "x"));
+}
+
+TEST(WorkerProtocol, NumbersOutOfRangeAreNothing) {
+    const std::string request = encode(WorkerRequest(bake_request())), answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3}});
+    for (const char* bad : {"4294967296", "2147483648", "1.5", "\"1\"", "null", "1e30", "true"}) EXPECT_FALSE(decode_request(replaced(request, "[-16384,", std::string("[") + bad + ","))) << bad;
+    for (const char* bad : {"-1", "4294967296", "17.5", "1e30"}) EXPECT_FALSE(decode_request(replaced(request, R"("rays":17)", std::string(R"("rays":)") + bad))) << bad;
+    for (const char* bad : {"-9", "9.0", "18446744073709551616", "\"9\""}) EXPECT_FALSE(decode_answer(replaced(answer, R"("id":9)", std::string(R"("id":)") + bad))) << bad;
+    for (const char* bad : {"9223372036854775808", "0.5", "null"}) EXPECT_FALSE(decode_answer(replaced(answer, R"("size":1)", std::string(R"("size":)") + bad))) << bad;
+}
+
+TEST(WorkerProtocol, AnUnknownRequestIsNothing) { EXPECT_FALSE(decode_request(replaced(encode(WorkerRequest(bake_request())), "\"bake\"", "\"boil\""))); }
+
+TEST(WorkerProtocol, SettingsComeBackFromTheDatabase) {
+    EXPECT_EQ(decode_settings(encode_settings(bake_request().settings)).value(), bake_request().settings);
+    EXPECT_FALSE(decode_settings(""));
+    EXPECT_FALSE(decode_settings("{}"));
+}
+
+}  // namespace
+}  // namespace drtv::farm
