@@ -48,8 +48,9 @@ int serve(const ServeOptions& options) {
     int signal = 0;
     sigwait(&signals, &signal);
     spdlog::info("stopping: the running sectors are finished or put back");
-    (*server)->stop();
+    // The farm first: calls that wait for it get their answer, and the server need not wait for them.
     (*farm)->stop(std::chrono::seconds(10));
+    (*server)->stop();
     spdlog::info("stopped");
     return 0;
 }

@@ -39,7 +39,7 @@ Result<std::unique_ptr<Farm>> Farm::open(Options options) {
     LocalExecutor::Callbacks callbacks;
     callbacks.next = [&farm = *farm] { return farm.next_task(); };
     callbacks.finished = [&farm = *farm](std::uint64_t id, int failed_attempts, const Outcome& outcome) { farm.task_finished(static_cast<std::int64_t>(id), failed_attempts, outcome); };
-    farm->executor_ = std::make_unique<LocalExecutor>(LocalExecutor::Options{farm->options_.worker_command, farm->options_.threads}, std::move(callbacks));
+    farm->executor_ = std::make_unique<LocalExecutor>(LocalExecutor::Options{.worker_command = farm->options_.worker_command, .threads = farm->options_.threads}, std::move(callbacks));
     farm->executor_->wake();
     return farm;
 }
@@ -47,7 +47,7 @@ Result<std::unique_ptr<Farm>> Farm::open(Options options) {
 Farm::~Farm() { executor_.reset(); }
 
 void Farm::stop(std::chrono::milliseconds patience) {
-    if (executor_) executor_->drain(patience);
+    if (executor_) executor_->stop(patience);
 }
 
 Result<void> Farm::load() {

@@ -3,27 +3,37 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 namespace drtv::farm {
 
 LocalExecutor::LocalExecutor(Options options, Callbacks callbacks)
     : options_(std::move(options)), callbacks_(std::move(callbacks)), window_(static_cast<std::size_t>(options_.threads) + 2), thread_([this] { run(); }) {}
 
-LocalExecutor::~LocalExecutor() {
+LocalExecutor::~LocalExecutor() { stop(std::chrono::milliseconds(0)); }
+
+void LocalExecutor::stop(std::chrono::milliseconds patience) {
     {
-        const std::lock_guard lock(mutex_);
+        std::unique_lock lock(mutex_);
+        draining_ = true;
+        changed_.wait_for(lock, patience, [this] { return idle_; });
         stopping_ = true;
     }
     changed_.notify_all();
+    if (!thread_.joinable()) return;
     thread_.join();
     worker_.reset();
     // Nobody waits for an answer that cannot come.
-    for (auto& [id, request] : in_flight_) {
+    const auto refuse = [](Request& request) {
         if (request.promise) request.promise->set_value(FailureAnswer{"the server is stopping", true});
-    }
-    for (Request& request : inspections_) request.promise->set_value(FailureAnswer{"the server is stopping", true});
-    for (Request& request : again_) {
-        if (request.promise) request.promise->set_value(FailureAnswer{"the server is stopping", true});
-    }
+    };
+    for (auto& [id, request] : in_flight_) refuse(request);
+    std::for_each(again_.begin(), again_.end(), refuse);
+    const std::lock_guard lock(mutex_);
+    std::for_each(inspections_.begin(), inspections_.end(), refuse);
+    in_flight_.clear();
+    again_.clear();
+    inspections_.clear();
 }
 
 void LocalExecutor::wake() {
@@ -49,26 +59,24 @@ std::future<Outcome> LocalExecutor::inspect(const map::Digest& manifest) {
     return future;
 }
 
-void LocalExecutor::drain(std::chrono::milliseconds patience) {
-    std::unique_lock lock(mutex_);
-    draining_ = true;
-    changed_.wait_for(lock, patience, [this] { return idle_; });
-}
-
 void LocalExecutor::run() {
     for (;;) {
         std::deque<Event> events;
+        bool stalled = false;
         {
             std::unique_lock lock(mutex_);
             idle_ = in_flight_.empty();
             if (idle_) changed_.notify_all();
             // Not for inspections_: while the window is full they wait for an event.
-            changed_.wait(lock, [this] { return stopping_ || woken_ || !events_.empty(); });
+            const auto news = [this] { return stopping_ || woken_ || !events_.empty(); };
+            if (in_flight_.empty()) changed_.wait(lock, news);
+            else stalled = !changed_.wait_until(lock, last_news_ + options_.stall_limit, news);
             if (stopping_) return;
             idle_ = false;
             woken_ = false;
             events.swap(events_);
         }
+        if (stalled) handle_death(fmt::format("gave no sign for {} s, and was ended,", std::chrono::duration_cast<std::chrono::seconds>(options_.stall_limit).count()));
         for (const Event& event : events) handle(event);
         fill_window();
     }
@@ -81,6 +89,7 @@ void LocalExecutor::handle(const Event& event) {
 }
 
 void LocalExecutor::handle_answer(const WorkerAnswer& answer) {
+    last_news_ = std::chrono::steady_clock::now();
     const auto found = in_flight_.find(answer.id);
     if (found == in_flight_.end()) return;
     Request request = std::move(found->second);
@@ -175,6 +184,7 @@ void LocalExecutor::send(Request request) {
         retry_or_fail(std::move(request), "no worker could be started");
         return;
     }
+    if (in_flight_.empty()) last_news_ = std::chrono::steady_clock::now();
     const std::uint64_t id = next_id_++;
     std::visit([id](auto& r) { r.id = id; }, request.what);
     const auto [entry, added] = in_flight_.emplace(id, std::move(request));

@@ -32,6 +32,9 @@ class LocalExecutor {
     struct Options {
         std::vector<std::string> worker_command;
         int threads = 1;  // sectors in flight: a few more than threads, so that none waits
+        // A worker that answers nothing for so long while it has work hangs, and is ended. The dearest sector that
+        // settings allow takes minutes.
+        std::chrono::milliseconds stall_limit = std::chrono::minutes(30);
     };
     // Called from the executor's own thread, never under its lock.
     struct Callbacks {
@@ -41,7 +44,7 @@ class LocalExecutor {
 
     LocalExecutor(Options options, Callbacks callbacks);
 
-    // Ends the worker; what is still in flight is not reported.
+    // Stops without patience.
     ~LocalExecutor();
     LocalExecutor(const LocalExecutor&) = delete;
     LocalExecutor& operator=(const LocalExecutor&) = delete;
@@ -52,8 +55,9 @@ class LocalExecutor {
     // Imports a map in the worker, before any waiting sector.
     [[nodiscard]] std::future<Outcome> inspect(const map::Digest& manifest);
 
-    // Takes no more work and waits until what is in flight has finished, at most `patience`.
-    void drain(std::chrono::milliseconds patience);
+    // Takes no more work, waits at most `patience` until what is in flight has finished, then ends the worker. What
+    // was not finished is not reported; open and later inspections are answered with a refusal.
+    void stop(std::chrono::milliseconds patience);
 
   private:
     struct Request {
@@ -96,6 +100,7 @@ class LocalExecutor {
     std::unique_ptr<WorkerProcess> worker_;
     std::uint64_t worker_number_ = 0;
     std::uint64_t next_id_ = 1;
+    std::chrono::steady_clock::time_point last_news_;  // last answer, or the first request after a pause
     std::map<std::uint64_t, Request> in_flight_;  // by the id sent to the worker
     std::deque<Request> again_;                   // to be tried again, alone
 

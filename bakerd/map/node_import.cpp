@@ -1,9 +1,8 @@
 #include "bakerd/map/import_parts.h"
 
-#include "bakerd/map/accessor.h"
+#include "bakerd/map/node_transform.h"
 
 #include <fmt/format.h>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
@@ -57,8 +56,8 @@ class NodeImporter {
         while (!stack.empty()) {
             Pending pending = std::move(stack.back());
             stack.pop_back();
-            auto local = local_transform(pending.node);
-            if (!local) return tl::unexpected(local.error());
+            const auto local = local_transform(model_.nodes[pending.node]);
+            if (!local) return fail(pending.node, local.error());
             const glm::dmat4 world_from_node = pending.world_from_parent * *local;
             if (!finite(world_from_node)) return fail(pending.node, "its transform is not finite");
             if (auto role = read_role(pending); !role) return role;
@@ -106,32 +105,6 @@ class NodeImporter {
         return roots;
     }
 
-    [[nodiscard]] tl::expected<glm::dmat4, std::string> local_transform(std::size_t index) const {
-        const tinygltf::Node& node = model_.nodes[index];
-        glm::dmat4 local(1);
-        if (node.matrix.size() == 16) {
-            for (glm::length_t c = 0; c < 4; ++c) {
-                for (glm::length_t r = 0; r < 4; ++r) local[c][r] = node.matrix[static_cast<std::size_t>(4 * c + r)];
-            }
-            if (local[0][3] != 0 || local[1][3] != 0 || local[2][3] != 0 || local[3][3] != 1) return fail(index, "its matrix is not affine");
-            return local;
-        }
-        const glm::dvec3 translation = node.translation.size() == 3 ? glm::dvec3(node.translation[0], node.translation[1], node.translation[2]) : glm::dvec3(0);
-        const glm::dvec3 scale = node.scale.size() == 3 ? glm::dvec3(node.scale[0], node.scale[1], node.scale[2]) : glm::dvec3(1);
-        glm::dquat rotation(1, 0, 0, 0);
-        if (node.rotation.size() == 4) rotation = glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-        return compose(index, translation, rotation, scale);
-    }
-
-    [[nodiscard]] tl::expected<glm::dmat4, std::string> compose(std::size_t index, const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) const {
-        const double length = glm::length(rotation);
-        if (!(length > 1e-6 && length < 1e6)) return fail(index, fmt::format("its rotation is a quaternion of length {}", length));
-        glm::dmat4 local(glm::mat3_cast(rotation * (1 / length)));
-        for (glm::length_t c = 0; c < 3; ++c) local[c] *= scale[c];
-        local[3] = glm::dvec4(translation, 1);
-        return local;
-    }
-
     Imported read_role(Pending& pending) const {
         const tinygltf::Value& extras = model_.nodes[pending.node].extras;
         if (!extras.IsObject()) return {};
@@ -169,8 +142,8 @@ class NodeImporter {
             if (auto counted = count_placed(pending.node, *mesh, 1); !counted) return counted;
             return place(pending, *mesh, world_from_node, node.name);
         }
-        const auto transforms = instance_transforms(pending.node, instancing->second);
-        if (!transforms) return tl::unexpected(transforms.error());
+        const auto transforms = instance_transforms(document_, instancing->second);
+        if (!transforms) return fail(pending.node, "EXT_mesh_gpu_instancing: " + transforms.error());
         if (auto counted = count_placed(pending.node, *mesh, transforms->size()); !counted) return counted;
         for (std::size_t n = 0; n < transforms->size(); ++n) {
             const glm::dmat4 world_from_instance = world_from_node * (*transforms)[n];
@@ -275,37 +248,6 @@ class NodeImporter {
         volume.digest = digest_volume(volume);
         map_.volumes.push_back(std::move(volume));
         return {};
-    }
-
-    tl::expected<std::vector<glm::dmat4>, std::string> instance_transforms(std::size_t node, const tinygltf::Value& extension) const {
-        std::vector<float> translations, rotations, scales;
-        std::size_t count = SIZE_MAX;
-        // The document's check saw to the types.
-        const tinygltf::Value& attributes = extension.Get("attributes");
-        const auto read = [&](const char* name, std::size_t components, std::vector<float>& out) -> Imported {
-            if (!attributes.Has(name)) return {};
-            auto values = read_floats(document_, attributes.Get(name).GetNumberAsInt(), components);
-            if (!values) return tl::unexpected(values.error());
-            out = std::move(*values);
-            const std::size_t elements = out.size() / components;
-            if (count != SIZE_MAX && elements != count) return fail(node, fmt::format("EXT_mesh_gpu_instancing: {} has {} elements, others have {}", name, elements, count));
-            count = elements;
-            return {};
-        };
-        if (auto done = read("TRANSLATION", 3, translations); !done) return tl::unexpected(done.error());
-        if (auto done = read("ROTATION", 4, rotations); !done) return tl::unexpected(done.error());
-        if (auto done = read("SCALE", 3, scales); !done) return tl::unexpected(done.error());
-        if (count == SIZE_MAX) return fail(node, "EXT_mesh_gpu_instancing has none of TRANSLATION, ROTATION, SCALE");
-        std::vector<glm::dmat4> transforms;
-        for (std::size_t n = 0; n < count; ++n) {
-            const glm::dvec3 t = translations.empty() ? glm::dvec3(0) : glm::dvec3(translations[3 * n], translations[3 * n + 1], translations[3 * n + 2]);
-            const glm::dvec3 s = scales.empty() ? glm::dvec3(1) : glm::dvec3(scales[3 * n], scales[3 * n + 1], scales[3 * n + 2]);
-            const glm::dquat r = rotations.empty() ? glm::dquat(1, 0, 0, 0) : glm::dquat(rotations[4 * n + 3], rotations[4 * n], rotations[4 * n + 1], rotations[4 * n + 2]);
-            const auto local = compose(node, t, r, s);
-            if (!local) return tl::unexpected(local.error());
-            transforms.push_back(*local);
-        }
-        return transforms;
     }
 
     Imported import_light(std::size_t index, const glm::dmat4& world_from_node) {

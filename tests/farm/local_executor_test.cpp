@@ -34,7 +34,7 @@ class LocalExecutorTest : public testing::Test {
             EXPECT_TRUE(outcomes.emplace(id, std::pair(failed_attempts, std::move(outcome))).second) << id << " finished twice";
             changed.notify_all();
         };
-        executor = std::make_unique<LocalExecutor>(LocalExecutor::Options{std::move(command), threads}, std::move(callbacks));
+        executor = std::make_unique<LocalExecutor>(LocalExecutor::Options{std::move(command), threads, stall_limit}, std::move(callbacks));
     }
     void start_fake(const std::string& mode, int threads = 2) { start({DRTV_FAKE_WORKER, mode}, threads); }
 
@@ -63,6 +63,7 @@ class LocalExecutorTest : public testing::Test {
         EXPECT_NE(failure->sentence.find(with), std::string::npos) << failure->sentence;
     }
 
+    std::chrono::milliseconds stall_limit = std::chrono::minutes(30);
     std::mutex mutex;
     std::condition_variable changed;
     std::deque<BakeRequest> queue;                                 // guarded by mutex
@@ -202,12 +203,12 @@ TEST_F(LocalExecutorTest, TheDestructorAnswersPendingInspections) {
     }
 }
 
-TEST_F(LocalExecutorTest, DrainWaitsForWhatIsInFlightAndStartsNothing) {
+TEST_F(LocalExecutorTest, StopWaitsForWhatIsInFlightAndStartsNothing) {
     start_fake("normal", 1);
     for (int n = 0; n < 20; ++n) add(fake::slow);
     executor->wake();
     std::this_thread::sleep_for(150ms);
-    executor->drain(10s);
+    executor->stop(10s);
     const std::lock_guard lock(mutex);
     EXPECT_EQ(outcomes.size(), 3u);  // the window
     EXPECT_EQ(queue.size(), 17u);
@@ -215,30 +216,43 @@ TEST_F(LocalExecutorTest, DrainWaitsForWhatIsInFlightAndStartsNothing) {
     ASSERT_EQ(refused.wait_for(0s), std::future_status::ready);
 }
 
-TEST_F(LocalExecutorTest, DrainRightAfterAWakeLosesNothing) {
+TEST_F(LocalExecutorTest, StopRightAfterAWakeLosesNothing) {
     for (int round = 0; round < 30; ++round) {
         start_fake("normal", 2);
         for (int n = 0; n < 8; ++n) add(fake::good);
         executor->wake();
         std::this_thread::sleep_for(std::chrono::microseconds(100 * round));
-        executor->drain(10s);
+        executor->stop(10s);
         executor.reset();
-        EXPECT_EQ(outcomes.size() + queue.size(), added) << "in flight after drain";
+        EXPECT_EQ(outcomes.size() + queue.size(), added) << "in flight after the stop";
         queue.clear();
         added = outcomes.size();
     }
 }
 
-TEST_F(LocalExecutorTest, DrainGivesUpAfterItsPatience) {
+TEST_F(LocalExecutorTest, StopGivesUpAfterItsPatience) {
     start_fake("normal");
     add(fake::silent);
     executor->wake();
     std::this_thread::sleep_for(100ms);
     const auto before = std::chrono::steady_clock::now();
-    executor->drain(200ms);
+    executor->stop(200ms);
     EXPECT_GE(std::chrono::steady_clock::now() - before, 190ms);
     executor.reset();
     EXPECT_TRUE(outcomes.empty());  // not reported: put back
+}
+
+TEST_F(LocalExecutorTest, SectorThatHangsTheWorkerFailsAloneAndTheRestGoesOn) {
+    stall_limit = 300ms;
+    start_fake("normal");
+    add(fake::good);
+    add(fake::silent);
+    for (int n = 0; n < 10; ++n) add(fake::good);
+    ASSERT_TRUE(wait_for_all());
+    for (std::uint64_t id = 0; id < added; ++id) {
+        if (id == 1) expect_failed(id, max_attempts, "gave no sign");
+        else expect_baked(id);
+    }
 }
 
 }  // namespace

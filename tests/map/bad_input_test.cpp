@@ -453,6 +453,14 @@ TEST(Hostile, InstancesOfABigMeshAreLimited) {
     expect_refused(b.import(), {"map.gltf", "node 0", "limit"});
 }
 
+TEST(Hostile, VolumesOfABigMeshAreLimited) {
+    GltfBuilder b;
+    Shape big;
+    for (int n = 0; n < 300000; ++n) big.positions.emplace_back(n, n % 7, n % 3);
+    b.add_instances(b.add_mesh(big), std::vector<glm::vec3>(1000), {.role = "no_probes"});
+    expect_refused(b.import(), {"map.gltf", "node 0", "limit"});
+}
+
 TEST(Hostile, RootsThatAreOneChainAreRefused) {
     // Walked from each root, n nodes are n * n / 2.
     Json nodes = Json::array(), roots = Json::array();

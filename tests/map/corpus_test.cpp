@@ -1,5 +1,6 @@
 // Files by others: shared/data/E_importer with what the Khronos validator says of each, and the real maps.
 #include "bakerd/map/import.h"
+#include "bakerd/map/texture.h"
 #include "tests/map/gltf_builder.h"
 #include "tests/map/import_checks.h"
 
@@ -98,12 +99,12 @@ void expect_sound(const Map& map) {
             EXPECT_FALSE(primitive.triangles.empty());
             for (const glm::uvec3& t : primitive.triangles) ASSERT_TRUE(t.x < primitive.positions.size() && t.y < primitive.positions.size() && t.z < primitive.positions.size());
             for (const glm::vec3& p : primitive.positions) ASSERT_TRUE(finite(p));
-            if (!primitive.colours.empty()) EXPECT_EQ(primitive.colours.size(), primitive.positions.size());
-            if (map.materials.at(primitive.material).texture != map::no_texture) EXPECT_EQ(primitive.uvs.size(), primitive.positions.size());
+            if (!primitive.colours.empty()) { EXPECT_EQ(primitive.colours.size(), primitive.positions.size()); }
+            if (map.materials.at(primitive.material).texture != map::no_texture) { EXPECT_EQ(primitive.uvs.size(), primitive.positions.size()); }
         }
     }
     for (const map::Material& material : map.materials) {
-        if (material.texture != map::no_texture) EXPECT_LT(material.texture, map.textures.size());
+        if (material.texture != map::no_texture) { EXPECT_LT(material.texture, map.textures.size()); }
     }
     for (const map::Texture& texture : map.textures) EXPECT_EQ(texture.rgba.size(), std::size_t{texture.width} * texture.height * 4);
     for (const map::Object& object : map.objects) {
@@ -146,7 +147,7 @@ TEST_F(Corpus, ValidFilesAreImported) {
         // Degenerate triangles are left out.
         EXPECT_LE(drawn_triangles(*map), entry.triangles);
         EXPECT_EQ(drawn_triangles(*map) > 0, entry.triangles > 0);
-        if (entry.file.find("Strip") == std::string::npos) EXPECT_EQ(drawn_triangles(*map), entry.triangles);
+        if (entry.file.find("Strip") == std::string::npos) { EXPECT_EQ(drawn_triangles(*map), entry.triangles); }
     }
 }
 
@@ -241,7 +242,7 @@ TEST_F(Corpus, ValidatorMeshesPlacedAreMapOrSentence) {
         if (map) expect_sound(*map);
         else expect_refused(map, {"placed.gltf"});
         for (const char* broken : {"index_buffer_oob", "accessor_unequal_count", "unresolved_indices", "small_stride", "joints_no_weights"}) {
-            if (entry.file.find(broken) != std::string::npos) EXPECT_TRUE(!map || map->objects.empty());
+            if (entry.file.find(broken) != std::string::npos) { EXPECT_TRUE(!map || map->objects.empty()); }
         }
     }
 }
@@ -262,7 +263,21 @@ TEST_F(Corpus, RealModelsAreImported) {
     EXPECT_GT(files, 100u);
 }
 
-// A real file damaged: here the JPEG decoder is reached.
+TEST_F(Corpus, DamagedJpegIsTextureOrSentence) {
+    const FileBytes sound = bytes_of(text_of(data / "C_sponza/textures/vase_hanging.jpg"));
+    if (sound.empty()) GTEST_SKIP() << "no JPEG";
+    EXPECT_TRUE(map::decode_texture(sound).has_value());
+    std::mt19937 random(20240613);
+    for (int n = 0; n < 400; ++n) {
+        FileBytes damaged = sound;
+        for (int k = 0; k < 3; ++k) damaged[random() % (n % 2 == 0 ? 700 : damaged.size())] = static_cast<std::uint8_t>(random());
+        if (n % 5 == 0) damaged.resize(random() % damaged.size());
+        const auto texture = map::decode_texture(damaged);
+        if (!texture) expect_refused(texture, {});
+    }
+}
+
+// A real file damaged, its buffers and pictures too.
 TEST_F(Corpus, DamagedRealFilesAreMapOrSentence) {
     std::mt19937 random(20240613);
     for (const char* name : {"valid/texture_transform", "valid/vertex_colors", "valid/glb_padding", "valid/uri_spaces", "valid/spec_gloss"}) {
