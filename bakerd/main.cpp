@@ -11,6 +11,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -58,6 +59,8 @@ int serve(const ServeOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    // gRPC tells failures in paragraphs of its own; ours are one sentence. The variable, when set, wins.
+    ::setenv("GRPC_VERBOSITY", "NONE", 0);
     // Talk goes to standard error; colours only on a terminal, and never against NO_COLOR.
     const bool no_color = std::getenv("NO_COLOR") != nullptr;
     auto log = no_color ? spdlog::stderr_logger_mt("bakerd") : spdlog::stderr_color_mt("bakerd");

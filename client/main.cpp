@@ -3,8 +3,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdlib>
+
 int main(int argc, char** argv) {
     using namespace drtv::client;
+    // gRPC tells failures in paragraphs of its own; ours are one sentence. The variable, when set, wins.
+    ::setenv("GRPC_VERBOSITY", "NONE", 0);
     CLI::App app{"bake submits maps to bakerd and pulls the baked sector files."};
     app.require_subcommand(1);
     app.set_version_flag("--version", "bake 0.1.0");

@@ -302,8 +302,7 @@ class Daemon(FarmTest):
     def test_taken_port_taken_folder_and_unwritable_folder_are_told(self):
         daemon = self.farm.daemon()
         port = self.farm.run("bakerd", "serve", "--data", self.farm.path("other"), "--listen", daemon.address, timeout=20)
-        self.assertEqual(port.returncode, 1)
-        self.assertIn(f"cannot listen on {daemon.address}: the port is in use", port.stderr.splitlines()[-1])
+        self.assert_sentence(port, f"cannot listen on {daemon.address}: the port is in use", status=1)
         folder = self.farm.run("bakerd", "serve", "--data", self.farm.path("data"), "--listen", "127.0.0.1:0", timeout=20)
         self.assert_sentence(folder, "in use by another bakerd", str(daemon.process.pid), status=1)
         unwritable = self.farm.run("bakerd", "serve", "--data", "/proc/drtv", "--listen", "127.0.0.1:0", timeout=20)
