@@ -5,6 +5,7 @@
 #include "bakerd/trace/device.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -80,7 +81,10 @@ int main(int argc, char** argv) {
     serve_command->add_option("--tls-cert", serve_options.tls.certificate, "Server certificate (PEM)");
     serve_command->add_option("--tls-key", serve_options.tls.key, "Its key (PEM)");
     serve_command->add_option("--tls-client-ca", serve_options.tls.client_ca, "Authority that signs clients' certificates (PEM)");
-    serve_command->set_config("--config", "", "File with the options above, as `name = value` lines");
+    // CLI11 reads configuration for the whole program; the options of `serve` stand under a line `[serve]`.
+    app.set_config("--config", "", "File with options: `name = value` lines below a line `[serve]`")->check(CLI::ExistingFile);
+    app.allow_config_extras(CLI::config_extras_mode::error);
+    serve_command->configurable()->fallthrough();
 
     drtv::farm::WorkerOptions worker_options;
     CLI::App* worker_command = app.add_subcommand("worker", "Answer requests on standard input (started by the daemon)");
@@ -90,7 +94,10 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error);
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        const std::string what = app.get_subcommands().empty() && !app.remaining().empty() ? fmt::format("there is no command '{}'", app.remaining().front()) : error.what();
+        complain(what + "; bakerd --help lists what there is");
+        return 2;
     }
     if (*worker_command) return drtv::farm::run_worker(worker_options);
     return serve(serve_options);

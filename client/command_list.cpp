@@ -32,12 +32,12 @@ int print(Connection& connection, const grpc::Status& status, const v1::Job& job
 }  // namespace
 
 int run_list(Connection& connection) {
-    if (!connection.options.json) std::printf("%5s  %-9s  %-19s  %13s  %9s  %s\n", "JOB", "STATE", "CREATED", "SECTORS", "PROBES", "PRESET");
     v1::ListJobsRequest request;
     for (;;) {
         grpc::ClientContext context;
         v1::ListJobsResponse response;
         if (const grpc::Status status = connection.jobs->ListJobs(&context, request, &response); !status.ok()) return complain(connection.sentence(status));
+        if (!connection.options.json && request.page_token().empty()) std::printf("%5s  %-9s  %-19s  %13s  %9s  %s\n", "JOB", "STATE", "CREATED", "SECTORS", "PROBES", "PRESET");
         for (const v1::Job& job : response.jobs()) {
             if (connection.options.json) std::puts(json_line(job).c_str());
             else

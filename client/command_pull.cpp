@@ -117,10 +117,15 @@ class Puller {
 
 }  // namespace
 
-int run_pull(Connection& connection, const std::string& argument, const std::string& folder) {
+tl::expected<void, std::string> make_folder(const std::string& folder) {
     std::error_code code;
     fs::create_directories(folder, code);
-    if (code) return complain(fmt::format("cannot make the folder {}: {}", folder, code.message()));
+    if (!code && fs::is_directory(folder, code)) return {};
+    return tl::unexpected(fmt::format("cannot make the folder '{}': {}", folder, code ? code.message() : "it is a file"));
+}
+
+int run_pull(Connection& connection, const std::string& argument, const std::string& folder) {
+    if (auto made = make_folder(folder); !made) return complain(made.error());
     const std::string job = job_resource(argument);
     const auto listed = list_wanted(connection, job, folder);
     if (!listed) return complain(listed.error());

@@ -60,6 +60,10 @@ int run_submit(Connection& connection, const SubmitOptions& options) {
     if (!job) return complain(job.error());
     const auto local = collect_map(options.maps);
     if (!local) return complain(local.error());
+    if (!options.pull_folder.empty()) {
+        // Before anything is baked: a wrong folder should not cost an hour.
+        if (auto made = make_folder(options.pull_folder); !made) return complain(made.error());
+    }
     catch_interrupt();
     const auto map = upload_map(connection, *local);
     if (!map) return complain(map.error());

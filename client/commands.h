@@ -25,6 +25,9 @@ int run_cancel(Connection& connection, const std::string& job);
 int run_watch(Connection& connection, const std::string& job);
 int run_pull(Connection& connection, const std::string& job, const std::string& folder);
 
+// The folder and those above it; a sentence when it cannot be had.
+[[nodiscard]] tl::expected<void, std::string> make_folder(const std::string& folder);
+
 // Exit status for ctrl-C, as shells count.
 inline constexpr int exit_interrupted = 130;
 

@@ -42,7 +42,10 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        const std::string what = app.get_subcommands().empty() && !app.remaining().empty() ? "there is no command '" + app.remaining().front() + "'" : error.what();
+        complain(what + "; bake --help lists what there is");
+        return 2;
     }
     auto connection = connect(options);
     if (!connection) return complain(connection.error());

@@ -102,13 +102,17 @@ tl::expected<std::vector<fs::path>, std::string> find_roots(const std::vector<st
         const fs::path path = fs::weakly_canonical(fs::absolute(argument, code), code);
         if (!fs::exists(path, code)) return tl::unexpected(fmt::format("the map {} does not exist", argument));
         if (!fs::is_directory(path, code)) {
+            // A pipe or a device would never end.
+            if (!fs::is_regular_file(path, code)) return tl::unexpected(fmt::format("the map {} is not a regular file", argument));
             roots.push_back(path);
             continue;
         }
         const std::size_t before = roots.size();
         for (const auto& entry : fs::directory_iterator(path, code)) {
-            if (entry.path().extension() == ".glb" || entry.path().extension() == ".gltf") roots.push_back(entry.path());
+            const bool named_so = entry.path().extension() == ".glb" || entry.path().extension() == ".gltf";
+            if (named_so && fs::is_regular_file(entry.path(), code)) roots.push_back(entry.path());
         }
+        if (code) return tl::unexpected(fmt::format("cannot read the folder {}: {}", argument, code.message()));
         if (roots.size() == before) return tl::unexpected(fmt::format("the folder {} holds no .glb or .gltf file", argument));
     }
     std::sort(roots.begin(), roots.end());

@@ -9,10 +9,15 @@ preset=console
 while [[ $# -gt 0 ]]; do
   case $1 in
     --preset) preset=${2:?--preset needs a name}; shift 2 ;;
+    -h | --help) sed -n '2,3s/^# //p' "${BASH_SOURCE[0]}"; exit 0 ;;
     -*) echo "demo.sh: unknown option $1" >&2; exit 2 ;;
     *) demo_dir=$1; shift ;;
   esac
 done
+case $preset in
+  draft | console | pc) ;;
+  *) echo "demo.sh: the preset '$preset' is unknown: there are draft, console and pc" >&2; exit 2 ;;
+esac
 build_dir=$source_dir/build/release
 say() { printf '\n== %s\n' "$*" >&2; }
 

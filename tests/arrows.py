@@ -41,7 +41,7 @@ FOREIGN = {
     r"openssl/": {"bakerd/map", "client"},
     r"CLI/": {"bakerd", "client"},
     r"spdlog/": {"bakerd", "bakerd/farm", "bakerd/service"},
-    r"fmt/": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/farm", "bakerd/service", "client"},
+    r"fmt/": {"bakerd", "placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/farm", "bakerd/service", "client"},
     r"tl/expected": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/farm", "bakerd/service", "client"},
 }
 

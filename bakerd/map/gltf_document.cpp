@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <cstring>
 #include <exception>
 #include <optional>
 #include <span>

@@ -39,6 +39,9 @@ struct Shared {
 inline constexpr std::uint32_t no_mesh = UINT32_MAX;
 [[nodiscard]] tl::expected<std::uint32_t, std::string> import_mesh(const GltfDocument& document, std::size_t mesh, const MaterialIndices& materials, Map& map, Shared& shared);
 
+// One punctual light but for its place and name. The sentence names the light.
+[[nodiscard]] tl::expected<Light, std::string> import_light(const tinygltf::Model& model, int number);
+
 // The default scene's nodes: objects, probes, volumes, lights.
 [[nodiscard]] Imported import_nodes(const GltfDocument& document, const MaterialIndices& materials, Map& map, Shared& shared);
 

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace drtv::map {
@@ -127,7 +126,7 @@ class NodeImporter {
     Imported import_node(const Pending& pending, const glm::dmat4& world_from_node) {
         if (pending.role == NodeRole::ignore) return {};
         const tinygltf::Node& node = model_.nodes[pending.node];
-        if (auto light = import_light(pending.node, world_from_node); !light) return light;
+        if (auto light = add_light(pending.node, world_from_node); !light) return light;
         if (pending.role == NodeRole::probe) {
             if (is_far(world_from_node[3])) return fail_far(pending.node);
             map_.probes.push_back({glm::dvec3(world_from_node[3]) + 0.0, node.name});  // no negative zeros
@@ -139,12 +138,12 @@ class NodeImporter {
         if (*mesh == no_mesh) return {};
         const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
         if (instancing == node.extensions.end()) {
-            if (auto counted = count_placed(pending.node, *mesh, 1); !counted) return counted;
+            if (auto counted = count_placed(pending, *mesh, 1); !counted) return counted;
             return place(pending, *mesh, world_from_node, node.name);
         }
         const auto transforms = instance_transforms(document_, instancing->second);
         if (!transforms) return fail(pending.node, "EXT_mesh_gpu_instancing: " + transforms.error());
-        if (auto counted = count_placed(pending.node, *mesh, transforms->size()); !counted) return counted;
+        if (auto counted = count_placed(pending, *mesh, transforms->size()); !counted) return counted;
         for (std::size_t n = 0; n < transforms->size(); ++n) {
             const glm::dmat4 world_from_instance = world_from_node * (*transforms)[n];
             if (!finite(world_from_instance)) return fail(pending.node, fmt::format("the transform of instance {} is not finite", n));
@@ -163,18 +162,21 @@ class NodeImporter {
         return vertices;
     }
 
-    Imported count_placed(std::size_t node, std::uint32_t mesh, std::size_t instances) {
+    Imported count_placed(const Pending& pending, std::uint32_t mesh, std::size_t instances) {
+        if (is_volume(pending.role)) return count_copied(pending.node, mesh, instances);
         placed_vertices_ += instances * vertices_of(mesh);
-        if (map_.objects.size() + instances > max_objects) return fail(node, fmt::format("with its instances the map has over {} objects, the limit", max_objects));
-        if (placed_vertices_ > max_placed_vertices) return fail(node, fmt::format("with its instances the file places {} vertices, over the limit of {}", placed_vertices_, max_placed_vertices));
+        if (map_.objects.size() + instances > max_objects) return fail(pending.node, fmt::format("with its instances the map has over {} objects, the limit", max_objects));
+        if (placed_vertices_ > max_placed_vertices) return fail(pending.node, fmt::format("with its instances the file places {} vertices, over the limit of {}", placed_vertices_, max_placed_vertices));
         return {};
     }
 
-    Imported count_copied(std::size_t node, std::uint32_t mesh) {
-        copied_vertices_ += vertices_of(mesh);
-        if (copied_vertices_ > max_copied_vertices) return fail(node, fmt::format("volumes and flat objects have over {} vertices, the limit", max_copied_vertices));
+    Imported count_copied(std::size_t node, std::uint32_t mesh, std::size_t instances) {
+        copied_vertices_ += instances * vertices_of(mesh);
+        if (copied_vertices_ > max_copied_vertices) return fail(node, fmt::format("volumes and flat objects up to it have {} vertices, over the limit of {}", copied_vertices_, max_copied_vertices));
         return {};
     }
+
+    static bool is_volume(NodeRole role) { return role == NodeRole::no_probes || role == NodeRole::interior; }
 
     tl::expected<std::uint32_t, std::string> mesh_index(std::size_t gltf_mesh) {
         std::optional<std::uint32_t>& known = mesh_of_[gltf_mesh];
@@ -187,10 +189,7 @@ class NodeImporter {
     }
 
     Imported place(const Pending& pending, std::uint32_t mesh, const glm::dmat4& world_from_object, std::string name) {
-        if (pending.role == NodeRole::no_probes || pending.role == NodeRole::interior) {
-            if (auto counted = count_copied(pending.node, mesh); !counted) return counted;
-            return add_volume(pending, mesh, world_from_object, std::move(name));
-        }
+        if (is_volume(pending.role)) return add_volume(pending, mesh, world_from_object, std::move(name));
         Object object;
         object.mesh = mesh;
         object.role = pending.role == NodeRole::vegetation ? Role::vegetation : Role::fixed;
@@ -200,7 +199,7 @@ class NodeImporter {
         const double side = std::max({glm::length(glm::dvec3(world_from_object[0])), glm::length(glm::dvec3(world_from_object[1])), glm::length(glm::dvec3(world_from_object[2]))});
         if (volume <= 1e-9 * side * side * side) {
             // Scaled flat: the inverse that instancing needs does not exist, so the surface gets a mesh of its own.
-            if (auto counted = count_copied(pending.node, mesh); !counted) return counted;
+            if (auto counted = count_copied(pending.node, mesh, 1); !counted) return counted;
             object.mesh = flattened_mesh(mesh, object.world_from_object);
             object.world_from_object = glm::mat4x3(1);
         }
@@ -250,35 +249,17 @@ class NodeImporter {
         return {};
     }
 
-    Imported import_light(std::size_t index, const glm::dmat4& world_from_node) {
+    Imported add_light(std::size_t index, const glm::dmat4& world_from_node) {
         const auto found = model_.nodes[index].extensions.find("KHR_lights_punctual");
         if (found == model_.nodes[index].extensions.end()) return {};
-        const int number = found->second.Get("light").GetNumberAsInt();  // checked with the document
-        const tinygltf::Light& source = model_.lights[static_cast<std::size_t>(number)];
-        Light light;
-        if (source.type == "spot") light.kind = LightKind::spot;
-        else if (source.type == "directional") light.kind = LightKind::directional;
-        else if (source.type != "point") return fail(index, fmt::format("light {}: type '{}' is unknown", number, source.type));
-        for (std::size_t k = 0; k < 3 && k < source.color.size(); ++k) light.colour[static_cast<glm::length_t>(k)] = static_cast<float>(source.color[k]);
-        light.intensity = static_cast<float>(source.intensity);
-        light.range_m = static_cast<float>(source.range);
-        if (light.kind == LightKind::spot) {
-            light.inner_cone_radians = static_cast<float>(source.spot.innerConeAngle);
-            light.outer_cone_radians = static_cast<float>(source.spot.outerConeAngle);
-        }
-        const float values[] = {light.colour.x, light.colour.y, light.colour.z, light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians};
-        for (float value : values) {
-            if (!(value >= 0 && std::isfinite(value))) return fail(index, fmt::format("light {}: {} is not a colour, an intensity, a range or an angle", number, value));
-        }
-        if (light.inner_cone_radians > light.outer_cone_radians || light.outer_cone_radians > std::numbers::pi_v<float> / 2) {
-            return fail(index, fmt::format("light {}: cone angles {} and {} do not lie one in the other and below pi/2", number, light.inner_cone_radians, light.outer_cone_radians));
-        }
+        auto light = import_light(model_, found->second.Get("light").GetNumberAsInt());  // checked with the document
+        if (!light) return fail(index, light.error());
         if (is_far(world_from_node[3])) return fail_far(index);
-        light.position = glm::vec3(world_from_node[3]);
+        light->position = glm::vec3(world_from_node[3]);
         const glm::dvec3 shines = -glm::dvec3(world_from_node[2]);  // along the node's -z
-        light.direction = glm::length(shines) > 0 ? glm::vec3(glm::normalize(shines)) : glm::vec3(0, 0, -1);
-        light.name = model_.nodes[index].name;
-        map_.lights.push_back(std::move(light));
+        light->direction = glm::length(shines) > 0 ? glm::vec3(glm::normalize(shines)) : glm::vec3(0, 0, -1);
+        light->name = model_.nodes[index].name;
+        map_.lights.push_back(std::move(*light));
         return {};
     }
 

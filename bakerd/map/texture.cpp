@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 // stb_image stays in this file, with its symbols private.
 #define STB_IMAGE_STATIC
@@ -54,10 +55,36 @@ glm::vec4 texel(const Texture& texture, std::uint32_t x, std::uint32_t y) {
 // Beyond this a float holds no position inside the texture any more. What is no number lands there too.
 float bounded(float v) { return v > -1e6f ? std::min(v, 1e6f) : -1e6f; }
 
+// stb_image 2.27 writes a Huffman table of any length into room for 256 codes. So the segments are walked as it walks
+// them, and such a table is refused first.
+bool has_oversized_huffman_table(std::span<const std::uint8_t> jpeg) {
+    for (std::size_t at = 0; at + 1 < jpeg.size();) {
+        const std::uint8_t marker = jpeg[at + 1];
+        if (jpeg[at] != 0xFF || marker == 0xFF) {
+            ++at;
+            continue;
+        }
+        at += 2;
+        const bool alone = marker == 0x00 || marker == 0x01 || (marker >= 0xD0 && marker <= 0xD9);  // no segment follows
+        if (alone || at + 2 > jpeg.size()) continue;
+        const std::size_t end = at + (std::size_t{jpeg[at]} << 8 | jpeg[at + 1]);
+        if (marker == 0xC4) {
+            for (std::size_t table = at + 2; table < end && table + 17 <= jpeg.size();) {
+                const std::size_t codes = std::accumulate(&jpeg[table + 1], &jpeg[table] + 17, std::size_t{0});
+                if (codes > 256) return true;
+                table += 17 + codes;
+            }
+        }
+        at = std::max(end, at + 2);
+    }
+    return false;
+}
+
 }  // namespace
 
 tl::expected<Texture, std::string> decode_texture(std::span<const std::uint8_t> encoded) {
     int width = 0, height = 0, channels = 0;
+    if (encoded.size() > 1 && encoded[0] == 0xFF && has_oversized_huffman_table(encoded)) return tl::unexpected(std::string("a Huffman table of the JPEG has over 256 codes"));
     const int size = static_cast<int>(encoded.size());
     if (stbi_info_from_memory(encoded.data(), size, &width, &height, &channels) == 0) {
         return tl::unexpected(std::string("it is neither PNG nor JPEG"));

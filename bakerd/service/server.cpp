@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -40,6 +41,16 @@ tl::expected<std::shared_ptr<grpc::ServerCredentials>, std::string> credentials(
     return grpc::SslServerCredentials(options);
 }
 
+// gRPC takes a port modulo 65536.
+tl::expected<void, std::string> check_address(const std::string& address) {
+    const std::size_t colon = address.rfind(':');
+    const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
+    int number = -1;
+    const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+    if (error == std::errc() && end == port.data() + port.size() && number >= 0 && number <= 65535 && colon > 0) return {};
+    return tl::unexpected(fmt::format("the address '{}' is not HOST:PORT with a port from 0 to 65535", address));
+}
+
 }  // namespace
 
 struct Server::State {
@@ -57,6 +68,7 @@ struct Server::State {
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 tl::expected<std::unique_ptr<Server>, std::string> Server::start(farm::Farm& farm, const std::string& address, const TlsFiles& tls) {
+    if (auto checked = check_address(address); !checked) return tl::unexpected(checked.error());
     const auto secured = credentials(tls);
     if (!secured) return tl::unexpected(secured.error());
     grpc::EnableDefaultHealthCheckService(true);
@@ -73,7 +85,7 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(farm::Farm& far
     builder.RegisterService(&state->jobs);
     builder.RegisterService(&state->sectors);
     state->server = builder.BuildAndStart();
-    if (!state->server || state->port == 0) return tl::unexpected(fmt::format("cannot listen on {}: the port is in use or the address is wrong", address));
+    if (!state->server || state->port == 0) return tl::unexpected(fmt::format("cannot listen on {}: the port is in use, or the host is not an address of this machine", address));
     return std::unique_ptr<Server>(new Server(std::move(state)));
 }
 

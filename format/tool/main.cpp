@@ -1,6 +1,7 @@
 // drtv: validates, shows and pictures sector files.
 #include "commands.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <vector>
 
@@ -29,6 +30,10 @@ int run(const std::vector<std::string>& arguments) {
     }
     const std::string& command = arguments.front();
     const Arguments rest = Arguments(arguments).subspan(1);
+    if (std::find(rest.begin(), rest.end(), "--help") != rest.end()) {
+        std::fputs(usage, stdout);
+        return exit_valid;
+    }
     if (command == "validate") return run_validate(rest);
     if (command == "info") return run_info(rest);
     if (command == "dump") return run_dump(rest);

@@ -217,6 +217,10 @@ class Client(FarmTest):
         cases = [
             (["submit", "/nowhere/map.glb"], ["/nowhere/map.glb", "does not exist"]),
             (["submit", empty], ["holds no .glb or .gltf file"]),
+            (["submit", "/dev/zero"], ["/dev/zero", "not a regular file"]),
+            (["submit", island, "--pull", island], ["cannot make the folder"]),
+            (["submit"], ["MAP"]),
+            (["sumbit", island], ["sumbit"]),
             (["submit", island, "--preset", "ultra"], ["'ultra'", "draft, console and pc"]),
             (["submit", island, "--set", "rays=none"], ["rays", "'none'"]),
             (["submit", island, "--set", "rays=8"], ["16 to 65536"]),
@@ -309,11 +313,19 @@ class Daemon(FarmTest):
         self.assert_sentence(unwritable, "/proc/drtv", status=1)
 
     def test_wrong_arguments_are_told(self):
-        for arguments, part in ((["serve"], "--data"), (["serve", "--data", "x", "--executor", "cloud"], "cloud"), (["serve", "--data", "x", "--threads", "-1"], "-1"), (["fly"], "subcommand")):
+        for arguments, part in ((["serve"], "--data"), (["serve", "--data", "x", "--executor", "cloud"], "cloud"), (["serve", "--data", "x", "--threads", "-1"], "-1"), (["fly"], "'fly'"),
+                                (["serve", "--data", self.farm.path("x"), "--listen", "127.0.0.1:99999"], "127.0.0.1:99999"), (["serve", "--config", "/nowhere.ini"], "/nowhere.ini")):
             with self.subTest(arguments=arguments):
-                done = self.farm.run("bakerd", *arguments, timeout=20)
-                self.assertNotEqual(done.returncode, 0)
-                self.assertIn(part, done.stderr + done.stdout)
+                self.assert_sentence(self.farm.run("bakerd", *arguments, timeout=20), "bakerd: ", part)
+
+    def test_options_can_stand_in_a_file(self):
+        config = self.farm.path("bakerd.ini")
+        with open(config, "w", encoding="utf-8") as file:
+            file.write("[serve]\nthreads = 1\n")
+        self.assertIn("bakes on 1 threads", self.farm.daemon("data", "--config", config).log())
+        with open(config, "w", encoding="utf-8") as file:
+            file.write("[serve]\ntreads = 1\n")
+        self.assert_sentence(self.farm.run("bakerd", "serve", "--data", self.farm.path("other"), "--config", config, timeout=20), "treads")
 
     def test_terminated_daemon_stops_cleanly_and_goes_on_later(self):
         daemon = self.farm.daemon()
