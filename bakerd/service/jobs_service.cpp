@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <limits>
 #include <thread>
 
@@ -15,7 +13,7 @@ namespace {
 constexpr int max_watchers = 256;
 constexpr std::chrono::milliseconds watch_interval{100};  // at most ten messages a second
 constexpr std::chrono::milliseconds watch_patience{500};  // how soon a gone client or a stopping server is noticed
-constexpr std::int32_t default_page = 50, max_page = 1000;
+constexpr std::int64_t default_page = 50, max_page = 1000;
 
 v1::Job::State to_proto(farm::JobState state) {
     switch (state) {
@@ -81,18 +79,13 @@ grpc::Status JobsService::GetJob(grpc::ServerContext*, const v1::GetJobRequest* 
 }
 
 grpc::Status JobsService::ListJobs(grpc::ServerContext*, const v1::ListJobsRequest* request, v1::ListJobsResponse* response) {
-    std::int64_t before = std::numeric_limits<std::int64_t>::max();
-    const std::string& token = request->page_token();
-    if (!token.empty()) {
-        const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), before);
-        if (error != std::errc() || end != token.data() + token.size()) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("'{}' is not a page token of this server", token.substr(0, 100))};
-    }
-    if (request->page_size() < 0) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("the page size {} is negative", request->page_size())};
-    const std::int32_t size = request->page_size() == 0 ? default_page : std::min(request->page_size(), max_page);
-    const auto views = farm_.list_jobs(before, static_cast<std::size_t>(size) + 1);
+    const auto page = page_of(request->page_token(), request->page_size(), std::numeric_limits<std::int64_t>::max(), default_page, max_page);
+    if (!page) return to_status(page.error());
+    const auto size = static_cast<std::size_t>(page->size);
+    const auto views = farm_.list_jobs(page->from, size + 1);
     if (!views) return to_status(views.error());
-    for (std::size_t n = 0; n < views->size() && n < static_cast<std::size_t>(size); ++n) fill((*views)[n], *response->add_jobs());
-    if (views->size() > static_cast<std::size_t>(size)) response->set_next_page_token(std::to_string((*views)[static_cast<std::size_t>(size) - 1].row.id));
+    for (std::size_t n = 0; n < views->size() && n < size; ++n) fill((*views)[n], *response->add_jobs());
+    if (views->size() > size) response->set_next_page_token(std::to_string((*views)[size - 1].row.id));
     return grpc::Status::OK;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 namespace drtv::service {
@@ -52,6 +53,17 @@ farm::Result<map::Digest> map_from_name(const std::string& name) {
 farm::Result<map::Digest> digest_from_text(const std::string& hex) {
     if (const auto digest = map::digest_from_hex(hex)) return *digest;
     return farm::fail(farm::ErrorCode::invalid_argument, fmt::format("'{}' is not a SHA-256 digest of 64 lower-case hexadecimal digits", shortened(hex)));
+}
+
+farm::Result<Page> page_of(const std::string& token, std::int32_t size, std::int64_t start, std::int64_t default_size, std::int64_t max_size) {
+    Page page{start, size == 0 ? default_size : std::min<std::int64_t>(size, max_size)};
+    if (!token.empty()) {
+        const char* end = token.data() + token.size();
+        const auto [stopped, error] = std::from_chars(token.data(), end, page.from);
+        if (error != std::errc() || stopped != end || page.from < 0) return farm::fail(farm::ErrorCode::invalid_argument, fmt::format("'{}' is not a page token of this server", shortened(token)));
+    }
+    if (size < 0) return farm::fail(farm::ErrorCode::invalid_argument, fmt::format("the page size {} is negative", size));
+    return page;
 }
 
 }  // namespace drtv::service

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 namespace drtv::service {
 namespace {
@@ -40,18 +39,13 @@ void fill(const farm::SectorView& view, v1::Sector& out) {
 grpc::Status SectorsService::ListSectors(grpc::ServerContext*, const v1::ListSectorsRequest* request, v1::ListSectorsResponse* response) {
     const auto job = job_from_name(request->job());
     if (!job) return to_status(job.error());
-    std::int64_t first = 0;
-    const std::string& token = request->page_token();
-    if (!token.empty()) {
-        const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), first);
-        if (error != std::errc() || end != token.data() + token.size() || first < 0) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("'{}' is not a page token of this server", token.substr(0, 100))};
-    }
-    if (request->page_size() < 0) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("the page size {} is negative", request->page_size())};
-    const std::int64_t size = request->page_size() == 0 ? default_page : std::min<std::int64_t>(request->page_size(), max_page);
-    const auto views = farm_.list_sectors(*job, first, size + 1);
+    const auto page = page_of(request->page_token(), request->page_size(), 0, default_page, max_page);
+    if (!page) return to_status(page.error());
+    const auto views = farm_.list_sectors(*job, page->from, page->size + 1);
     if (!views) return to_status(views.error());
-    for (std::size_t n = 0; n < views->size() && n < static_cast<std::size_t>(size); ++n) fill((*views)[n], *response->add_sectors());
-    if (views->size() > static_cast<std::size_t>(size)) response->set_next_page_token(std::to_string(first + size));
+    const auto size = static_cast<std::size_t>(page->size);
+    for (std::size_t n = 0; n < views->size() && n < size; ++n) fill((*views)[n], *response->add_sectors());
+    if (views->size() > size) response->set_next_page_token(std::to_string(page->from + page->size));
     return grpc::Status::OK;
 }
 
