@@ -1,5 +1,7 @@
 #include "bakerd/bake/world.h"
 
+#include "bakerd/bake/tile.h"
+
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -7,11 +9,8 @@
 namespace drtv::bake {
 namespace {
 
-constexpr std::int32_t tile_sectors = 8;
 // Sectors come tile by tile; two tiles are at work while one ends and the next begins.
 constexpr std::size_t kept_scenes = 2;
-
-std::int32_t floor_div(std::int32_t a, std::int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 }  // namespace
 
@@ -27,7 +26,7 @@ tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<co
 }
 
 std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate sector, float distance_m) {
-    const map::SectorCoordinate tile{floor_div(sector.i, tile_sectors), floor_div(sector.j, tile_sectors)};
+    const map::SectorCoordinate tile = tile_of(sector);
     CachedScene entry;
     {
         const std::lock_guard lock(mutex_);

@@ -1,5 +1,7 @@
 #include "bakerd/farm/job_request.h"
 
+#include "bakerd/bake/tile.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -17,8 +19,6 @@ bool touches(const Region& region, const map::SectorCoordinate& sector) {
     // A sector is half open: a region that ends on its eastern or northern border does not touch it from inside.
     return region.x1 >= x && region.x0 < x + map::sector_size_m && region.y1 >= y && region.y0 < y + map::sector_size_m;
 }
-
-std::int32_t tile_of(std::int32_t coordinate) { return coordinate >> 3; }
 
 }  // namespace
 
@@ -48,7 +48,8 @@ Result<std::vector<map::SectorCoordinate>> sectors_of(const std::optional<Region
         chosen = with_ground;
     }
     std::sort(chosen.begin(), chosen.end(), [](const map::SectorCoordinate& a, const map::SectorCoordinate& b) {
-        return std::tuple(tile_of(a.j), tile_of(a.i), a.j, a.i) < std::tuple(tile_of(b.j), tile_of(b.i), b.j, b.i);
+        const map::SectorCoordinate tile_a = bake::tile_of(a), tile_b = bake::tile_of(b);
+        return std::tuple(tile_a.j, tile_a.i, a.j, a.i) < std::tuple(tile_b.j, tile_b.i, b.j, b.i);
     });
     return chosen;
 }
