@@ -98,6 +98,7 @@ int run_watch(Connection& connection, const std::string& argument) {
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
     }
     if (!connection.options.json) std::puts(one_line(job).c_str());
+    for (const std::string& warning : job.warnings()) std::fprintf(stderr, "bake: warning: %s\n", warning.c_str());
     if (job.state() == v1::Job::SUCCEEDED && job.sectors_total() > 0 && job.probes() == 0) {
         std::fprintf(stderr, "bake: warning: no probe was placed: no column of the 4 m lattice meets ground with 1.5 m of air above it\n");
     }

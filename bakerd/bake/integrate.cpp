@@ -2,12 +2,19 @@
 // that a path's weight is the product of albedos. What a path brings is the sky's SH at the direction in which it
 // leaves. Upper and lower half of the first directions are normalised apart, each by the sum of its own basis
 // cosines over the same samples: an open sky, a plane and the energy bound then hold exactly, whatever the samples.
+// Static lights ride on the same paths: at each of their points one light is drawn, and emissive surfaces count both
+// when they are drawn and when a path meets them, by the balance heuristic (Veach 1997).
 #include "bakerd/bake/integrate.h"
+
+#include "bakerd/bake/convergence.h"
+#include "bakerd/bake/next_event.h"
+#include "bakerd/bake/path.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace drtv::bake {
@@ -15,6 +22,7 @@ namespace {
 
 using Accumulator = std::array<std::array<std::array<double, sh_count>, basis_count>, channel_count>;
 using BasisWeights = std::array<float, basis_count>;
+using BasisSums = std::array<std::array<double, basis_count>, channel_count>;
 
 enum Half : std::size_t { upper, lower };
 
@@ -29,99 +37,254 @@ BasisWeights basis_weights(const glm::vec3& w) {
 // The share of a cosine lobe around the basis direction that lies above the horizon.
 double upper_share(std::size_t b) { return (1 + static_cast<double>(transfer_basis[b][2])) / 2; }
 
-// A start for the next ray, certainly on the same side of every surface as the way that led here: a point of that
-// way, which is known to be free, where it is still clear of the surface by the coordinates' rounding. Where the
-// whole way runs closer to the surface than that (in the last micrometres of a crevice) there is no such point,
-// and the path ends: better a path lost than light through a wall.
-std::optional<glm::vec3> leave_surface(const trace::Ray& ray, const trace::Hit& hit) {
-    const glm::vec3 point = ray.origin + ray.direction * hit.distance_m;
-    const float magnitude = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), 1.0f});
-    const float clearance = magnitude * 0x1p-20f;  // 8 to 16 times the coordinates' last digit
-    const float cosine = -glm::dot(ray.direction, hit.normal);
-    const float back = clearance / cosine;
-    if (!(back <= hit.distance_m / 2)) return std::nullopt;
-    return ray.origin + ray.direction * (hit.distance_m - back);
+void add(BasisSums& sums, const BasisWeights& weights, const glm::vec3& light) {
+    for (std::size_t c = 0; c < channel_count; ++c) {
+        for (std::size_t b = 0; b < basis_count; ++b) sums[c][b] += static_cast<double>(weights[b] * light[static_cast<glm::length_t>(c)]);
+    }
 }
 
-// Where a ray leaves the sphere of what the probe can see; 0 when it starts outside.
-float exit_distance(const trace::Ray& ray, const glm::vec3& centre, float radius) {
-    const glm::vec3 m = ray.origin - centre;
-    const float b = glm::dot(m, ray.direction), c = glm::dot(m, m) - radius * radius;
-    return c >= 0 ? 0 : -b + std::sqrt(b * b - c);
+void add(BasisSums& sums, const BasisSums& more) {
+    for (std::size_t c = 0; c < channel_count; ++c) {
+        for (std::size_t b = 0; b < basis_count; ++b) sums[c][b] += more[c][b];
+    }
 }
+
+// Sums over one block of samples, enough for its relit irradiance.
+struct Block {
+    std::array<std::array<double, basis_count>, 2> weights{};  // by half of the first direction
+    std::array<BasisSums, 2> lit{};                            // under a sky of radiance 1
+    BasisSums static_light{};
+
+    void add(const Block& other) {
+        for (std::size_t half : {upper, lower}) {
+            for (std::size_t b = 0; b < basis_count; ++b) weights[half][b] += other.weights[half][b];
+            bake::add(lit[half], other.lit[half]);
+        }
+        bake::add(static_light, other.static_light);
+    }
+};
+
+constexpr std::uint32_t first_paths = 256;
+constexpr std::uint32_t numbers_a_light = 3;
+
+// What adds less than this to a path's static light, W/m2, is looked at only so often, and then counts as this much: in
+// the mean of some 1,000 paths it does not show. So lamps far away cost nothing.
+constexpr float faint = 0.01f;
 
 class Integrator {
   public:
-    Integrator(const trace::Scene& scene, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings, std::vector<trace::Ray>* shot)
-        : scene_(scene), samples_(samples), settings_(settings), shot_(shot), probe_(glm::vec3(position_units) * position_unit_m), shift_(digital_shift(position_units)) {}
+    Integrator(const trace::Scene& scene, const StaticLights& lights, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings,
+               RayLog* log)
+        : scene_(scene), samples_(samples), settings_(settings), log_(log), probe_(glm::vec3(position_units) * position_unit_m), shift_(digital_shift(position_units)),
+          next_event_(scene, lights, probe_, settings.reach_m), lit_(!next_event_.idle()) {}
 
     ProbeLight run() {
-        for (std::uint32_t n = 0; n < samples_.count(); ++n) trace_path(samples_.point(n));
+        if (settings_.error > 0) {
+            run_to(std::min(first_paths, samples_.count()));
+            while (reached_error() > static_cast<double>(settings_.error) && 2 * std::uint64_t{light_.paths} <= samples_.count()) {
+                for (std::size_t k = 0; k < block_count / 2; ++k) {
+                    Block pair = blocks_[2 * k];
+                    pair.add(blocks_[2 * k + 1]);
+                    blocks_[k] = pair;
+                }
+                std::fill(blocks_.begin() + block_count / 2, blocks_.end(), Block{});
+                run_to(2 * light_.paths);
+            }
+        } else {
+            run_to(samples_.count());
+        }
+        light_.error = static_cast<float>(reached_error());
+        if (lit_) add_direct_light();
         return normalised();
     }
 
   private:
+    // Shoots the paths up to `count`, which then make up the blocks.
+    void run_to(std::uint32_t count) {
+        for (std::uint32_t n = light_.paths; n < count; ++n) {
+            block_ = &blocks_[std::size_t{n} * block_count / count];
+            trace_path(n);
+        }
+        light_.paths = count;
+    }
+
     [[nodiscard]] glm::vec2 sample(std::span<const std::uint32_t> point, std::size_t dimension) const {
         return {unit_float(point[dimension] ^ shift_[dimension]), unit_float(point[dimension + 1] ^ shift_[dimension + 1])};
     }
 
-    void trace_path(std::span<const std::uint32_t> point) {
+    // Numbers that draw a light at a path's k-th point: of the table as far as it goes, else hashed.
+    [[nodiscard]] std::array<double, numbers_a_light> light_sample(std::uint32_t n, std::uint32_t k) const {
+        std::array<double, numbers_a_light> u{};
+        const std::span<const std::uint32_t> point = samples_.point(n);
+        for (std::size_t d = 0; d < numbers_a_light; ++d) {
+            const std::size_t dimension = 2 + 2 * std::size_t{settings_.bounces} + numbers_a_light * std::size_t{k} + d;
+            const std::uint32_t word = dimension < point.size() ? point[dimension] ^ shift_[dimension] : hashed(shift_[0], n, static_cast<std::uint32_t>(dimension));
+            u[d] = static_cast<double>(word) * 0x1p-32;
+        }
+        return u;
+    }
+
+    void trace_path(std::uint32_t n) {
+        const std::span<const std::uint32_t> point = samples_.point(n);
         trace::Ray ray{probe_, uniform_sphere(sample(point, 0)), settings_.reach_m};
         const BasisWeights weights = basis_weights(ray.direction);
         const Half half = ray.direction.z > 0 ? upper : lower;
-        for (std::size_t b = 0; b < basis_count; ++b) weight_sum_[half][b] += weights[b];
+        for (std::size_t b = 0; b < basis_count; ++b) block_->weights[half][b] += static_cast<double>(weights[b]);
+        add_emission_drawn_at_probe(n);
 
         glm::vec3 throughput(1);
+        float density = 0.25f * std::numbers::inv_pi_v<float>, footprint_m = 0;
         for (std::uint32_t bounce = 0;; ++bounce) {
             ++light_.rays;
-            if (shot_ != nullptr) shot_->push_back(ray);
+            if (log_ != nullptr) log_->paths.push_back(ray);
             const std::optional<trace::Hit> hit = scene_.closest(ray);
             if (!hit) {
                 if (bounce == 0) add_sky(weights, half);
                 else if (ray.direction.z > 0) add_bounce(weights, half, throughput, ray.direction);
                 return;
             }
-            if (bounce == settings_.bounces) return;
-            const trace::Surface surface = scene_.surface(*hit);
+            if (bounce == settings_.bounces && !lit_) return;
+            footprint_m += hit->distance_m * (bounce == 0 ? first_footprint : later_footprint);
+            const trace::Surface surface = scene_.surface(*hit, footprint_m);
             if (surface.absorbs) {
-                ++light_.back_hits;
+                count_back_hit(scene_.object_index(hit->instance));
                 return;
             }
-            const std::optional<glm::vec3> start = leave_surface(ray, *hit);
-            if (!start) return;
-            throughput *= surface.albedo;
-            ray.origin = *start;
-            ray.direction = cosine_hemisphere(sample(point, 2 + 2 * std::size_t{bounce}), hit->normal);
-            ray.far_m = exit_distance(ray, probe_, settings_.reach_m);
+            if (lit_ && surface.emission != glm::vec3(0)) add_emission_met(ray, *hit, surface.emission, density, weights, throughput);
+            if (bounce == settings_.bounces) return;
+            if (lit_) add_light_at(ray, *hit, surface, n, bounce + 1, weights, throughput);
+            const std::optional<Scattered> next = scatter(scene_, ray, *hit, surface, sample(point, 2 + 2 * std::size_t{bounce}));
+            if (!next) return;
+            throughput *= next->weight;
+            density = next->density;
+            ray = {next->origin, next->direction, exit_distance(next->origin, next->direction, probe_, settings_.reach_m)};
         }
+    }
+
+    void count_back_hit(std::uint32_t object) {
+        ++light_.back_hits;
+        const auto at = std::ranges::lower_bound(light_.back_hit_objects, object, {}, &std::pair<std::uint32_t, std::uint32_t>::first);
+        if (at != light_.back_hit_objects.end() && at->first == object) ++at->second;
+        else light_.back_hit_objects.insert(at, {object, 1});
     }
 
     void add_sky(const BasisWeights& weights, Half half) {
         if (half == lower) return;
-        for (std::size_t b = 0; b < basis_count; ++b) visible_sum_[b] += weights[b];
+        for (std::size_t b = 0; b < basis_count; ++b) visible_sum_[b] += static_cast<double>(weights[b]);
+        add(block_->lit[upper], weights, glm::vec3(1));
     }
 
     void add_bounce(const BasisWeights& weights, Half half, const glm::vec3& throughput, const glm::vec3& out) {
         const Float4 y = evaluate_sh({out.x, out.y, out.z});
         for (std::size_t c = 0; c < channel_count; ++c) {
-            const float radiance = throughput[static_cast<glm::length_t>(c)];
             for (std::size_t b = 0; b < basis_count; ++b) {
-                for (std::size_t i = 0; i < sh_count; ++i) bounce_sum_[half][c][b][i] += static_cast<double>(weights[b] * radiance * y[i]);
+                const double radiance = static_cast<double>(weights[b] * throughput[static_cast<glm::length_t>(c)]);
+                for (std::size_t i = 0; i < sh_count; ++i) bounce_sum_[half][c][b][i] += radiance * static_cast<double>(y[i]);
             }
         }
+        add(block_->lit[half], weights, throughput);
+    }
+
+    // Radiance that a path met on an emissive surface. The first directions' density cancels with `weights`' own, which
+    // all sums share: they count radiance times cosine times 4.
+    void add_emission_met(const trace::Ray& ray, const trace::Hit& hit, const glm::vec3& emission, float density, const BasisWeights& weights, const glm::vec3& throughput) {
+        const float drawn = next_event_.density_of(ray.origin, ray.direction, hit);
+        add(block_->static_light, weights, throughput * emission * (4 * density / (lumens_per_watt * (density + drawn))));
+    }
+
+    // Punctual lights are summed up without noise in the end; emissive surfaces are drawn here.
+    void add_emission_drawn_at_probe(std::uint32_t n) {
+        if (!next_event_.has_emissive()) return;
+        const std::optional<Incident> incident = next_event_.draw(probe_, light_sample(n, 0));
+        if (!incident || incident->density <= 0) return;
+        constexpr float density = 0.25f * std::numbers::inv_pi_v<float>;
+        glm::vec3 light = incident->light * (incident->density / (incident->density + density) * std::numbers::inv_pi_v<float>);
+        if (!survives(light, n, 0) || !sees(probe_, *incident)) return;
+        add(block_->static_light, basis_weights(incident->direction), light);
+    }
+
+    // Light from a static light by way of the surface that was hit: the path's k-th point.
+    void add_light_at(const trace::Ray& ray, const trace::Hit& hit, const trace::Surface& surface, std::uint32_t n, std::uint32_t k, const BasisWeights& weights, const glm::vec3& throughput) {
+        const glm::vec3 point = ray.origin + ray.direction * hit.distance_m;
+        const auto add_incident = [&](const Incident& incident, float scale) {
+            const float cosine = glm::dot(incident.direction, hit.normal);
+            const bool through = cosine < 0;
+            const glm::vec3& share = through ? surface.transmitted : surface.albedo;
+            glm::vec3 light = throughput * share * incident.light * (scale * std::abs(cosine) * 4 * std::numbers::inv_pi_v<float>);
+            if (!survives(light, n, 2 * k + 1)) return;
+            const std::optional<glm::vec3> start = through ? beyond_surface(scene_, ray, hit) : before_surface(ray, hit);
+            if (!start || !sees(*start, incident)) return;
+            if (incident.density > 0) {
+                const float side = transmitted_share(surface);
+                const float density = (through ? side : 1 - side) * std::abs(cosine) * std::numbers::inv_pi_v<float>;
+                light *= incident.density / (incident.density + density);
+            }
+            add(block_->static_light, weights, light);
+        };
+        for (const Sun& sun : next_event_.suns()) add_incident(next_event_.towards(sun, point), 1);
+        if (!next_event_.has_drawn_lights()) return;
+        glm::vec3 bound = throughput * (surface.albedo + surface.transmitted) * (next_event_.bound(point) * 4 * std::numbers::inv_pi_v<float>);
+        const float before = brightest(bound);
+        if (!survives(bound, n, 2 * k)) return;
+        if (const std::optional<Incident> incident = next_event_.draw(point, light_sample(n, k))) add_incident(*incident, brightest(bound) / before);
+    }
+
+    // Russian roulette: faint light is dropped, or raised by as much as it is seldom kept.
+    [[nodiscard]] bool survives(glm::vec3& light, std::uint32_t n, std::uint32_t number) const {
+        const float most = brightest(light);
+        if (most >= faint) return true;
+        if (static_cast<float>(hashed(shift_[1], n, number)) * 0x1p-32f * faint >= most) return false;
+        light *= faint / most;
+        return true;
+    }
+
+    static float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
+
+    bool sees(const glm::vec3& start, const Incident& incident) {
+        ++light_.shadow_rays;
+        if (log_ != nullptr) log_->shadows.push_back(next_event_.shadow_ray(start, incident));
+        return !scene_.occluded(next_event_.shadow_ray(start, incident));
+    }
+
+    void add_direct_light() {
+        const auto add_incident = [&](const Incident& incident) {
+            if (incident.light != glm::vec3(0) && sees(probe_, incident)) add(direct_, basis_weights(incident.direction), incident.light * std::numbers::inv_pi_v<float>);
+        };
+        for (const Sun& sun : next_event_.suns()) add_incident(next_event_.towards(sun, probe_));
+        for (const PointLight* light : next_event_.points()) add_incident(next_event_.towards(*light, probe_));
+    }
+
+    [[nodiscard]] double reached_error() const {
+        BlockMeans relit{}, lit{};
+        for (std::size_t k = 0; k < block_count; ++k) {
+            const double paths = static_cast<double>(light_.paths) / block_count;
+            for (std::size_t c = 0; c < channel_count; ++c) {
+                for (std::size_t b = 0; b < basis_count; ++b) {
+                    for (std::size_t half : {upper, lower}) {
+                        const double share = half == upper ? upper_share(b) : 1 - upper_share(b);
+                        if (blocks_[k].weights[half][b] > 0) relit[k][c][b] += share * blocks_[k].lit[half][c][b] / blocks_[k].weights[half][b];
+                    }
+                    lit[k][c][b] = blocks_[k].static_light[c][b] / paths;
+                }
+            }
+        }
+        return lit_ ? std::max(relative_error(relit), relative_error(lit)) : relative_error(relit);
     }
 
     ProbeLight normalised() {
+        Block all;
+        for (const Block& block : blocks_) all.add(block);
         for (std::size_t b = 0; b < basis_count; ++b) {
             const std::array<double, 2> share = {upper_share(b), 1 - upper_share(b)};
             for (std::size_t half : {upper, lower}) {
-                if (weight_sum_[half][b] <= 0) continue;
-                const double scale = share[half] / weight_sum_[half][b];
+                if (all.weights[half][b] <= 0) continue;
+                const double scale = share[half] / all.weights[half][b];
                 for (std::size_t c = 0; c < channel_count; ++c) {
                     for (std::size_t i = 0; i < sh_count; ++i) light_.transfer[c][b][i] += static_cast<float>(bounce_sum_[half][c][b][i] * scale);
                 }
             }
-            if (weight_sum_[upper][b] > 0) light_.sky_visibility[b] = static_cast<float>(visible_sum_[b] / weight_sum_[upper][b]);
+            if (all.weights[upper][b] > 0) light_.sky_visibility[b] = static_cast<float>(visible_sum_[b] / all.weights[upper][b]);
+            for (std::size_t c = 0; c < channel_count; ++c) light_.static_irradiance[c][b] = static_cast<float>(direct_[c][b] + all.static_light[c][b] / light_.paths);
         }
         return light_;
     }
@@ -129,20 +292,30 @@ class Integrator {
     const trace::Scene& scene_;
     const SampleTable& samples_;
     const IntegrationSettings& settings_;
-    std::vector<trace::Ray>* const shot_;
+    RayLog* const log_;
     const glm::vec3 probe_;
     const std::array<std::uint32_t, max_sample_dimensions> shift_;
+    const NextEvent next_event_;
+    const bool lit_;
 
-    std::array<std::array<double, basis_count>, 2> weight_sum_{};  // by half of the first direction
+    std::array<Block, block_count> blocks_{};
+    Block* block_ = nullptr;  // of the path at work
     std::array<Accumulator, 2> bounce_sum_{};
     std::array<double, basis_count> visible_sum_{};
+    BasisSums direct_{};
     ProbeLight light_;
 };
 
 }  // namespace
 
-ProbeLight integrate_probe(const trace::Scene& scene, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings, std::vector<trace::Ray>* shot) {
-    return Integrator(scene, position_units, samples, settings, shot).run();
+std::uint32_t sample_dimensions(std::uint32_t bounces, bool with_lights) {
+    const std::uint32_t paths = 2 + 2 * bounces;
+    return with_lights ? std::min(paths + numbers_a_light * (bounces + 1), max_sample_dimensions) : paths;
+}
+
+ProbeLight integrate_probe(const trace::Scene& scene, const StaticLights& lights, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings,
+                           RayLog* log) {
+    return Integrator(scene, lights, position_units, samples, settings, log).run();
 }
 
 }  // namespace drtv::bake

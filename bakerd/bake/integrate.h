@@ -1,6 +1,7 @@
-// Sky visibility and radiance transfer of one probe (DESIGN section 2; s19-s21), by paths from the probe.
+// What one probe gets from sky and static lights (DESIGN section 2; s19-s21), by paths from the probe.
 #pragma once
 
+#include "bakerd/bake/lights.h"
 #include "bakerd/bake/sampling.h"
 #include "bakerd/trace/scene.h"
 
@@ -12,23 +13,40 @@
 
 namespace drtv::bake {
 
+using BasisColours = std::array<std::array<float, basis_count>, channel_count>;  // [channel][basis direction]
+
 struct ProbeLight {
     // [channel][basis direction][SH coefficient]: E/pi from a sky of radiance Y_i by up to N bounces.
     std::array<std::array<std::array<float, sh_count>, basis_count>, channel_count> transfer{};
     std::array<float, basis_count> sky_visibility{};  // 1 under an open sky; [3] = 0
-    std::uint64_t rays = 0;                           // shot
-    std::uint64_t back_hits = 0;                      // of these, absorbed by the back of a one-sided surface
+    BasisColours static_irradiance{};                 // E/pi, W/m2, direct and bounced
+    std::uint32_t paths = 0;                          // shot from the probe
+    float error = 0;                                  // reached, as IntegrationSettings::error has it
+    std::uint64_t rays = 0;                           // of the paths
+    std::uint64_t shadow_rays = 0;                    // to static lights
+    std::uint64_t back_hits = 0;                      // rays absorbed by the back of a one-sided surface
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> back_hit_objects;  // of the map, with their share of back_hits; by object
 };
 
 struct IntegrationSettings {
     std::uint32_t bounces = 3;
     float reach_m = 512;
+    // Standard error to stop at, of E/pi relit by a sky of radiance 1 and of static irradiance, over their mean
+    // (convergence.h). Paths are doubled from 256 until it is reached or the samples are used up. 0: all samples.
+    float error = 0;
 };
 
-// A pure function of the triangles within reach and the arguments. `samples` has at least 2 + 2 bounces
-// dimensions. With `shot`, the rays are appended to it in their order, so that others can be measured on the same
-// ones. REQUIRES: a FloatMode on this thread.
-[[nodiscard]] ProbeLight integrate_probe(const trace::Scene& scene, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings,
-                                         std::vector<trace::Ray>* shot = nullptr);
+// Rays in the order in which they were shot, so that others can be measured on the same ones.
+struct RayLog {
+    std::vector<trace::Ray> paths, shadows;
+};
+
+// Numbers per path that `samples` should have.
+[[nodiscard]] std::uint32_t sample_dimensions(std::uint32_t bounces, bool with_lights);
+
+// A pure function of the triangles and lights within reach and the arguments. `samples` has at least
+// sample_dimensions(bounces, false) dimensions. With `log`, the rays are appended to it. REQUIRES: a FloatMode on this thread.
+[[nodiscard]] ProbeLight integrate_probe(const trace::Scene& scene, const StaticLights& lights, const glm::ivec3& position_units, const SampleTable& samples,
+                                         const IntegrationSettings& settings, RayLog* log = nullptr);
 
 }  // namespace drtv::bake

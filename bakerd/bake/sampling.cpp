@@ -110,6 +110,10 @@ std::array<std::uint32_t, max_sample_dimensions> digital_shift(const glm::ivec3&
     return shift;
 }
 
+std::uint32_t hashed(std::uint32_t key, std::uint32_t n, std::uint32_t dimension) {
+    return static_cast<std::uint32_t>(mixed(mixed((std::uint64_t{key} << 32 | n) + 0x9E3779B97F4A7C15u) ^ dimension) >> 32);
+}
+
 glm::vec3 uniform_sphere(glm::vec2 u) {
     const float z = 1 - 2 * u.x;
     const float r = std::sqrt(std::max(0.0f, 1 - z * z));

@@ -33,6 +33,9 @@ class SampleTable {
 // A probe's own digital shift of the table: words to be XORed, a function of its quantised position alone.
 [[nodiscard]] std::array<std::uint32_t, max_sample_dimensions> digital_shift(const glm::ivec3& position_units);
 
+// A random word of its three arguments.
+[[nodiscard]] std::uint32_t hashed(std::uint32_t key, std::uint32_t n, std::uint32_t dimension);
+
 // In [0, 1).
 [[nodiscard]] inline float unit_float(std::uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; }
 

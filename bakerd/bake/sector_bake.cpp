@@ -1,85 +1,31 @@
 #include "bakerd/bake/sector_bake.h"
 
+#include "bakerd/bake/convergence.h"
 #include "bakerd/bake/integrate.h"
+#include "bakerd/bake/local_encoding.h"
+#include "bakerd/bake/placed_sector.h"
 #include "placement/grid.h"
-#include "placement/placement.h"
 
 #include <drtv/validate.h>
 #include <drtv/write.h>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <map>
 
 namespace drtv::bake {
 namespace {
 
-static_assert(placement::units_per_m == position_units_per_m && placement::sector_size_m == sector_size_m);
-static_assert(placement::grid_size == grid_size && placement::no_probe == no_probe && placement::max_probes == max_probes);
+static_assert(placement::grid_size == grid_size && placement::no_probe == no_probe);
 
-placement::Surroundings surroundings_of(const trace::Scene& scene, float reach_m) {
-    placement::Surroundings surroundings;
-    surroundings.column = [&scene](glm::vec2 at, std::vector<placement::ColumnHit>& hits) {
-        std::vector<trace::ColumnHit> found;
-        scene.column(at, found);
-        hits.clear();
-        for (const trace::ColumnHit& hit : found) hits.push_back({hit.z_m, hit.up_facing, hit.down_facing});
-    };
-    surroundings.meets_back = [&scene, reach_m](const glm::vec3& origin, const glm::vec3& direction) {
-        const auto hit = scene.closest({origin, direction, reach_m});
-        return hit && !hit->front && scene.surface(*hit).absorbs;
-    };
-    surroundings.sees = [&scene](const glm::vec3& from, const glm::vec3& to) {
-        const float distance_m = glm::length(to - from);
-        return distance_m <= 0 || !scene.occluded({from, (to - from) / distance_m, distance_m});
-    };
-    return surroundings;
-}
+// Above this share of rays that end at the back of a one-sided surface, something stands inside out or open.
+constexpr double most_back_hits = 0.05;
 
-tl::expected<placement::Placement, std::string> place(const World& world, const trace::Scene& scene, const placement::Surroundings& surroundings, map::SectorCoordinate sector, float min_distance_m) {
-    const placement::Settings settings{min_distance_m};
-    const glm::vec2 corner = glm::vec2(sector.i, sector.j) * static_cast<float>(map::sector_size_m);
-    const float margin_m = placement::decision_margin_m(settings);
-    std::vector<placement::Box> vegetation;
-    for (const map::Bounds& bounds : scene.vegetation_bounds({corner - margin_m, corner + static_cast<float>(map::sector_size_m) + margin_m})) vegetation.push_back({bounds.low, bounds.high});
-    return placement::place_probes({sector.i, sector.j, vegetation, world.manual_probes(), world.no_probes()}, surroundings, settings);
-}
-
-ProbeKind kind_of(placement::Kind kind) {
-    switch (kind) {
-        case placement::Kind::ground: return ProbeKind::ground;
-        case placement::Kind::vegetation: return ProbeKind::vegetation;
-        case placement::Kind::manual: return ProbeKind::manual;
-    }
-    return ProbeKind::ground;
-}
-
-// Heights in 16 bits against the lowest probe: steps of 2^-10 m where the sector's probes span up to 64 m, doubled as
-// often as needed where they span more.
-tl::expected<void, std::string> store_positions(const std::vector<placement::PlacedProbe>& probes, Sector& sector) {
-    if (probes.empty()) return {};
-    const auto by_height = [](const placement::PlacedProbe& a, const placement::PlacedProbe& b) { return a.position.z < b.position.z; };
-    const std::int32_t lowest = std::min_element(probes.begin(), probes.end(), by_height)->position.z;
-    const std::int32_t highest = std::max_element(probes.begin(), probes.end(), by_height)->position.z;
-    sector.z_origin_units = lowest;
-    const auto step_of = [&](std::int32_t z) { return (z - lowest + ((1 << sector.z_shift) >> 1)) >> sector.z_shift; };
-    while (step_of(highest) > 65535) {
-        if (++sector.z_shift > max_z_shift) return tl::unexpected(fmt::format("sector ({}, {}): its probes span {} m of height", sector.i, sector.j, (highest - lowest) / position_units_per_m));
-    }
-    constexpr std::int32_t side = sector_size_m * position_units_per_m;
-    for (const placement::PlacedProbe& placed : probes) {
-        Probe probe;
-        probe.position = {static_cast<std::uint16_t>(placed.position.x - sector.i * side), static_cast<std::uint16_t>(placed.position.y - sector.j * side),
-                          static_cast<std::uint16_t>(step_of(placed.position.z))};
-        probe.kind = kind_of(placed.kind);
-        sector.probes.push_back(probe);
-    }
-    return {};
-}
+constexpr int least_static_exponent = -64;
 
 void store_light(const ProbeLight& light, Probe& probe) {
     for (std::size_t c = 0; c < channel_count; ++c) {
@@ -88,6 +34,23 @@ void store_light(const ProbeLight& light, Probe& probe) {
         }
     }
     for (std::size_t b = 0; b < basis_count; ++b) probe.sky_visibility[b] = encode_fixed(light.sky_visibility[b], sky_visibility_scale);
+}
+
+// Nothing where no probe gets any static light.
+void store_static_irradiance(const std::vector<ProbeLight>& lights, Sector& sector) {
+    const auto brightest = [](const ProbeLight& light) {
+        float most = 0;
+        for (const auto& channel : light.static_irradiance) most = std::max(most, *std::ranges::max_element(channel));
+        return most;
+    };
+    if (std::ranges::all_of(lights, [&](const ProbeLight& light) { return brightest(light) <= 0; })) return;
+    for (const ProbeLight& light : lights) {
+        StaticIrradiance& stored = sector.static_irradiance.emplace_back();
+        stored.exponent = static_cast<std::int8_t>(exponent_of(brightest(light), least_static_exponent));
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            for (std::size_t b = 0; b < basis_count; ++b) stored.codes[c][b] = encode_fixed(light.static_irradiance[c][b], scale_of_exponent(stored.exponent));
+        }
+    }
 }
 
 void store_report(const placement::Report& report, Statistics& statistics) {
@@ -99,51 +62,98 @@ void store_report(const placement::Report& report, Statistics& statistics) {
     statistics.used_distance_m = report.used_distance_m;
 }
 
+Convergence convergence_of(const std::vector<ProbeLight>& lights, const Settings& settings) {
+    Convergence convergence;
+    convergence.error_asked = settings.error;
+    std::vector<float> errors;
+    for (const ProbeLight& light : lights) {
+        errors.push_back(light.error);
+        convergence.paths_least = errors.size() == 1 ? light.paths : std::min(convergence.paths_least, light.paths);
+        convergence.paths_most = std::max(convergence.paths_most, light.paths);
+        convergence.static_rays += light.shadow_rays;
+    }
+    const ErrorSummary summary = summarise(std::move(errors));
+    convergence.error_median = summary.median;
+    convergence.error_p95 = summary.p95;
+    convergence.error_max = summary.max;
+    return convergence;
+}
+
+// Warns of surfaces seen from behind, and names the object that most of them belong to.
+void warn_of_backs(const map::Map& map, const Sector& sector, const std::vector<ProbeLight>& lights, std::vector<std::string>& warnings) {
+    const double share = static_cast<double>(sector.statistics.back_hits) / static_cast<double>(std::max<std::uint64_t>(sector.statistics.rays, 1));
+    if (!(share > most_back_hits)) return;
+    std::map<std::uint32_t, std::uint64_t> by_object;
+    for (const ProbeLight& light : lights) {
+        for (const auto& [object, hits] : light.back_hit_objects) by_object[object] += hits;
+    }
+    const auto most = std::ranges::max_element(by_object, {}, [](const auto& entry) { return entry.second; });
+    const std::string& name = map.objects[most->first].name;
+    warnings.push_back(fmt::format("sector ({}, {}): {:.0f} % of its rays meet surfaces from behind, most of them those of '{}': are its faces turned, or is a side of it missing?", sector.i, sector.j,
+                                   share * 100, name.empty() ? "an object without a name" : name));
+}
+
+// Local transfer from the sector's probes and its neighbours'.
+void bake_local(World& world, const trace::Scene& scene, const PlacedSector& placed, const Settings& settings, Sector& sector) {
+    std::vector<std::shared_ptr<const Placed>> around;
+    std::vector<const PlacedSector*> neighbours;
+    for (std::int32_t dj = -1; dj <= 1; ++dj) {
+        for (std::int32_t di = -1; di <= 1; ++di) {
+            const map::SectorCoordinate coordinate{placed.sector.i + di, placed.sector.j + dj};
+            if ((di == 0 && dj == 0) || !world.has_ground(coordinate)) continue;
+            around.push_back(world.placed(coordinate, settings, scene));
+            if (*around.back()) neighbours.push_back(&**around.back());  // what cannot be placed has no probes
+        }
+    }
+    const LocalSources sources = local_sources(placed, neighbours, settings.reach_m);
+    const LocalLight light = integrate_local(scene, sources.positions, placed.positions.size(), {settings.local_bounces, settings.local_rays, settings.reach_m});
+    sector.local_transfer = encode_local(sources, light, placed.positions.size(), settings.reach_m);
+    sector.convergence->local_bounces = settings.local_bounces;
+    sector.convergence->local_rays = settings.local_rays;
+    sector.convergence->local_transfer_rays = light.rays;
+}
+
 }  // namespace
 
-tl::expected<Sector, std::string> bake_sector(World& world, map::SectorCoordinate coordinate, const Settings& settings) {
+tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoordinate coordinate, const Settings& settings) {
     const trace::FloatMode float_mode;
-    // Placement looks over the border too, however short the reach.
-    const auto scene = world.scene_for(coordinate, std::max(settings.reach_m, placement::decision_margin_m({settings.min_distance_m})));
+    const auto scene = world.scene_for(coordinate, scene_distance_m(settings));
     const auto samples = world.samples_for(settings);
-    const placement::Surroundings surroundings = surroundings_of(*scene, settings.reach_m);
-    auto placed = place(world, *scene, surroundings, coordinate, settings.min_distance_m);
-    if (!placed) return tl::unexpected(placed.error());
+    const auto placed = world.placed(coordinate, settings, *scene);
+    if (!*placed) return tl::unexpected(placed->error());
+    const std::vector<placement::Position>& positions = (*placed)->positions;
 
-    Sector sector;
-    sector.i = coordinate.i;
-    sector.j = coordinate.j;
-    if (auto stored = store_positions(placed->probes, sector); !stored) return tl::unexpected(stored.error());
-    std::vector<placement::Position> positions;  // as stored: all that follows is a function of these
-    for (const Probe& probe : sector.probes) {
-        const auto units = position_units(sector, probe);
-        positions.emplace_back(units[0], units[1], units[2]);
-    }
-
+    BakedSector baked;
+    Sector& sector = baked.sector;
+    sector = (*placed)->sector;
     std::vector<ProbeLight> lights(positions.size());
     placement::ProbeGrid grid;
     const auto integrate_all = [&] {
         tbb::parallel_for(std::size_t{0}, positions.size(), [&](std::size_t p) {
             const trace::FloatMode task_float_mode;
-            lights[p] = integrate_probe(*scene, positions[p], *samples, {settings.bounces, settings.reach_m});
+            lights[p] = integrate_probe(*scene, world.lights(), positions[p], *samples, {settings.bounces, settings.reach_m, settings.error});
         });
     };
     const auto index_all = [&] {
         const trace::FloatMode task_float_mode;
-        grid = placement::build_grid(coordinate.i, coordinate.j, positions, surroundings);
+        grid = placement::build_grid(coordinate.i, coordinate.j, positions, surroundings_of(*scene, settings.reach_m));
     };
     // Isolated: a thread that waits for the rest of its sector must not start another one in between.
     tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(integrate_all, index_all); });
 
-    store_report(placed->report, sector.statistics);
+    store_report((*placed)->report, sector.statistics);
     for (std::size_t p = 0; p < lights.size(); ++p) {
         store_light(lights[p], sector.probes[p]);
         sector.statistics.rays += lights[p].rays;
         sector.statistics.back_hits += lights[p].back_hits;
     }
+    store_static_irradiance(lights, sector);
     sector.grid = {grid.z_origin_units, grid.cell_height_units, grid.cells};
     sector.bake = {settings.rays, settings.bounces, settings.reach_m, settings.min_distance_m, settings_key(settings).bytes};
-    return sector;
+    sector.convergence = convergence_of(lights, settings);
+    warn_of_backs(world.map(), sector, lights, baked.warnings);
+    if (settings.local_transfer) tbb::this_task_arena::isolate([&] { bake_local(world, *scene, **placed, settings, sector); });
+    return baked;
 }
 
 tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(const Sector& sector) {

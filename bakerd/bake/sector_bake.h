@@ -15,8 +15,13 @@
 
 namespace drtv::bake {
 
+struct BakedSector {
+    Sector sector;
+    std::vector<std::string> warnings;  // one sentence each, for the artist
+};
+
 // Runs on the calling thread's TBB arena. Fails with a sentence (too many manual probes; too high a sector).
-[[nodiscard]] tl::expected<Sector, std::string> bake_sector(World& world, map::SectorCoordinate coordinate, const Settings& settings);
+[[nodiscard]] tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoordinate coordinate, const Settings& settings);
 
 // The sector file, checked by the validator; a sentence with the first finding when it fails.
 [[nodiscard]] tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(const Sector& sector);

@@ -30,7 +30,13 @@ tl::expected<void, std::string> assign(Number& field, const tl::expected<Number,
 }  // namespace
 
 tl::expected<Settings, std::string> preset(std::string_view name) {
-    if (name == "console" || name == "pc") return Settings{};
+    if (name == "console") return Settings{};
+    if (name == "pc") {
+        Settings pc;
+        pc.rays = 4096;
+        pc.local_transfer = true;
+        return pc;
+    }
     if (name == "draft") {
         Settings draft;
         draft.rays = 256;
@@ -44,7 +50,16 @@ tl::expected<void, std::string> set(Settings& settings, std::string_view key, st
     if (key == "bounces") return assign(settings.bounces, parse<std::uint32_t>(key, value, 0, 8));
     if (key == "reach") return assign(settings.reach_m, parse<float>(key, value, 1, 8192));
     if (key == "min_distance") return assign(settings.min_distance_m, parse<float>(key, value, 1, 16));
-    return tl::unexpected(fmt::format("the setting '{}' is unknown: there are rays, bounces, reach and min_distance", key));
+    if (key == "error") return assign(settings.error, parse<float>(key, value, 0, 1));
+    if (key == "lprt_bounces") return assign(settings.local_bounces, parse<std::uint32_t>(key, value, 1, 4));
+    if (key == "lprt_rays") return assign(settings.local_rays, parse<std::uint32_t>(key, value, 16, 4096));
+    if (key == "lprt") {
+        const auto parsed = parse<std::uint32_t>(key, value, 0, 1);
+        if (!parsed) return tl::unexpected(parsed.error());
+        settings.local_transfer = *parsed == 1;
+        return {};
+    }
+    return tl::unexpected(fmt::format("the setting '{}' is unknown: there are rays, bounces, reach, min_distance, error, lprt, lprt_bounces and lprt_rays", key));
 }
 
 map::Digest settings_key(const Settings& settings) {
@@ -58,6 +73,12 @@ map::Digest settings_key(const Settings& settings) {
     hasher.add(settings.bounces);
     hasher.add(settings.reach_m);
     hasher.add(settings.min_distance_m);
+    hasher.add(settings.error);
+    hasher.add(settings.local_transfer);
+    if (settings.local_transfer) {
+        hasher.add(settings.local_bounces);
+        hasher.add(settings.local_rays);
+    }
     return hasher.finish();
 }
 

@@ -1,5 +1,6 @@
 #include "bakerd/bake/world.h"
 
+#include "bakerd/bake/integrate.h"
 #include "bakerd/bake/tile.h"
 
 #include <tbb/task_arena.h>
@@ -12,10 +13,16 @@ namespace {
 // Sectors come tile by tile; two tiles are at work while one ends and the next begins.
 constexpr std::size_t kept_scenes = 2;
 
+// Two rows of tiles side by side; a placement is some kilobytes.
+constexpr std::size_t kept_placements = 1024;
+
 }  // namespace
 
 tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map) {
     std::shared_ptr<World> world(new World(std::move(device), std::move(map)));
+    auto sectors = map::sectors_with_ground(world->map());
+    if (!sectors) return tl::unexpected(sectors.error());
+    world->sectors_ = std::move(*sectors);
     for (const map::Volume& volume : world->map().volumes) {
         auto closed = placement::ClosedVolume::make(volume.name, volume.positions, volume.triangles);
         if (!closed) return tl::unexpected(closed.error());
@@ -48,8 +55,26 @@ std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate secto
     return *entry.scene;
 }
 
+bool World::has_ground(map::SectorCoordinate sector) const {
+    return std::ranges::binary_search(sectors_, std::pair(sector.j, sector.i), {}, [](const map::SectorCoordinate& s) { return std::pair(s.j, s.i); });
+}
+
+std::shared_ptr<const Placed> World::placed(map::SectorCoordinate sector, const Settings& settings, const trace::Scene& scene) {
+    CachedPlacement entry;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = std::find_if(placements_.begin(), placements_.end(), [&](const CachedPlacement& p) { return p.sector == sector && p.reach_m == settings.reach_m && p.min_distance_m == settings.min_distance_m; });
+        if (found != placements_.end()) placements_.splice(placements_.begin(), placements_, found);
+        else placements_.push_front({sector, settings.reach_m, settings.min_distance_m, std::make_shared<std::once_flag>(), std::make_shared<Placed>()});
+        while (placements_.size() > kept_placements) placements_.pop_back();
+        entry = placements_.front();
+    }
+    std::call_once(*entry.found, [&] { *entry.placed = place_sector({manual_probes_, no_probes_}, scene, sector, settings); });
+    return entry.placed;
+}
+
 std::shared_ptr<const SampleTable> World::samples_for(const Settings& settings) {
-    const std::uint32_t dimensions = 2 + 2 * settings.bounces;
+    const std::uint32_t dimensions = sample_dimensions(settings.bounces, !lights_.empty());
     const std::lock_guard lock(mutex_);
     if (!samples_ || samples_->count() != settings.rays || sample_dimensions_ != dimensions) {
         samples_ = std::make_shared<const SampleTable>(settings.rays, dimensions);

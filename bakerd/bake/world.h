@@ -1,6 +1,8 @@
 // A map made ready for baking: geometry, volumes, and the scenes around the sectors at work. Thread-safe.
 #pragma once
 
+#include "bakerd/bake/lights.h"
+#include "bakerd/bake/placed_sector.h"
 #include "bakerd/bake/sampling.h"
 #include "bakerd/bake/settings.h"
 #include "bakerd/map/ground.h"
@@ -18,18 +20,25 @@
 
 namespace drtv::bake {
 
+using Placed = tl::expected<PlacedSector, std::string>;
+
 class World {
   public:
-    // Fails with a sentence when a `no_probes` or `interior` volume is not closed.
+    // Fails with a sentence when the map is too large or a `no_probes` or `interior` volume is not closed.
     [[nodiscard]] static tl::expected<std::shared_ptr<World>, std::string> open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map);
 
     [[nodiscard]] const map::Map& map() const { return *geometry_.map(); }
-    [[nodiscard]] const std::vector<placement::ClosedVolume>& no_probes() const { return no_probes_; }
-    [[nodiscard]] const std::vector<glm::dvec3>& manual_probes() const { return manual_probes_; }
+    [[nodiscard]] const StaticLights& lights() const { return lights_; }
+    [[nodiscard]] const std::vector<map::SectorCoordinate>& sectors_with_ground() const { return sectors_; }
+    [[nodiscard]] bool has_ground(map::SectorCoordinate sector) const;
 
     // All objects within a distance of the sector, and some more: the scene is shared by the 8 x 8 sectors of its
     // tile, so that neighbours do not build it again. What it holds beyond the distance changes no answer within.
     [[nodiscard]] std::shared_ptr<const trace::Scene> scene_for(map::SectorCoordinate sector, float distance_m);
+
+    // The probes of a sector, found once for itself and for all its neighbours. REQUIRES: the scene holds all within
+    // scene_distance_m of a sector or of its neighbour.
+    [[nodiscard]] std::shared_ptr<const Placed> placed(map::SectorCoordinate sector, const Settings& settings, const trace::Scene& scene);
 
     [[nodiscard]] std::shared_ptr<const SampleTable> samples_for(const Settings& settings);
 
@@ -40,14 +49,23 @@ class World {
         std::shared_ptr<std::once_flag> built;
         std::shared_ptr<std::shared_ptr<const trace::Scene>> scene;
     };
-    World(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map) : geometry_(std::move(device), std::move(map)) {}
+    struct CachedPlacement {
+        map::SectorCoordinate sector;
+        float reach_m, min_distance_m;
+        std::shared_ptr<std::once_flag> found;
+        std::shared_ptr<Placed> placed;
+    };
+    World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map) : geometry_(std::move(device), map), lights_(map) {}
 
     trace::MapGeometry geometry_;
+    const StaticLights lights_;
+    std::vector<map::SectorCoordinate> sectors_;  // with ground, sorted by (j, i)
     std::vector<placement::ClosedVolume> no_probes_;
     std::vector<glm::dvec3> manual_probes_;
 
     std::mutex mutex_;
     std::list<CachedScene> scenes_;                // guarded by mutex_; most recently used first
+    std::list<CachedPlacement> placements_;  // guarded by mutex_; most recently used first
     std::shared_ptr<const SampleTable> samples_;   // guarded by mutex_
     std::uint32_t sample_dimensions_ = 0;          // guarded by mutex_
 };

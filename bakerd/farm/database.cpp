@@ -9,7 +9,7 @@
 namespace drtv::farm {
 namespace {
 
-constexpr int schema_version = 1;
+constexpr int schema_version = 2;
 
 constexpr const char* schema = R"sql(
 CREATE TABLE map (manifest TEXT PRIMARY KEY, summary TEXT NOT NULL) WITHOUT ROWID;
@@ -20,12 +20,31 @@ CREATE TABLE job (
 CREATE TABLE task (
   id INTEGER PRIMARY KEY, key TEXT UNIQUE NOT NULL, manifest TEXT NOT NULL, i INTEGER NOT NULL, j INTEGER NOT NULL,
   settings TEXT NOT NULL, state INTEGER NOT NULL, failed_attempts INTEGER NOT NULL, result TEXT NOT NULL,
-  size INTEGER NOT NULL, probes INTEGER NOT NULL, rays INTEGER NOT NULL, error TEXT NOT NULL);
+  size INTEGER NOT NULL, probes INTEGER NOT NULL, rays INTEGER NOT NULL, error TEXT NOT NULL, warnings TEXT NOT NULL DEFAULT '');
 CREATE TABLE job_task (job INTEGER NOT NULL, task INTEGER NOT NULL, PRIMARY KEY (job, task)) WITHOUT ROWID;
 )sql";
 
-constexpr const char* task_columns = "id, key, manifest, i, j, settings, state, failed_attempts, result, size, probes, rays, error";
+constexpr const char* schema_2_from_1 = "ALTER TABLE task ADD COLUMN warnings TEXT NOT NULL DEFAULT ''";
+
+constexpr const char* task_columns = "id, key, manifest, i, j, settings, state, failed_attempts, result, size, probes, rays, error, warnings";
 constexpr const char* job_columns = "id, request_id, manifest, preset, settings, overrides, region, state, error, sectors_cached, created, ended";
+
+// A list of sentences in one column: a line each, for no sentence has a line's end.
+std::string joined(const std::vector<std::string>& sentences) {
+    std::string text;
+    for (const std::string& sentence : sentences) text += (text.empty() ? "" : "\n") + sentence;
+    return text;
+}
+
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> sentences;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        sentences.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return sentences;
+}
 
 Digest stored_digest(const std::string& hex) { return map::digest_from_hex(hex).value_or(Digest{}); }
 
@@ -87,6 +106,7 @@ class Database::Statement {
         row.result.probes = integer();
         row.result.rays = integer();
         row.error = text();
+        row.result.warnings = split(text());
         return row;
     }
     Result<std::optional<TaskRow>> one_task() {
@@ -98,7 +118,7 @@ class Database::Statement {
     void bind_task(const TaskRow& row) {
         bind(to_hex(row.key)).bind(to_hex(row.manifest)).bind(row.sector.i).bind(row.sector.j).bind(encode_settings(row.settings));
         bind(static_cast<std::int64_t>(row.state)).bind(row.failed_attempts).bind(to_hex(row.result.result));
-        bind(row.result.size_bytes).bind(row.result.probes).bind(row.result.rays).bind(row.error);
+        bind(row.result.size_bytes).bind(row.result.probes).bind(row.result.rays).bind(row.error).bind(joined(row.result.warnings));
     }
 
   private:
@@ -133,9 +153,9 @@ Result<std::unique_ptr<Database>> Database::open(const std::string& path) {
         version = query.integer();
     }
     if (version > schema_version) return fail(ErrorCode::failed_precondition, fmt::format("{} was written by a newer bakerd (schema {}, this one knows {})", path, version, schema_version));
-    if (version == 0) {
+    if (version == 1 || version == 0) {
         const auto created = database->transaction([&]() -> Result<void> {
-            if (auto done = database->execute(schema); !done) return done;
+            if (auto done = database->execute(version == 0 ? schema : schema_2_from_1); !done) return done;
             return database->execute(fmt::format("PRAGMA user_version={}", schema_version).c_str());
         });
         if (!created) return tl::unexpected(created.error());
@@ -242,8 +262,22 @@ Result<JobCounts> Database::job_counts(std::int64_t job) {
     return counts;
 }
 
+Result<std::vector<std::string>> Database::job_warnings(std::int64_t job, std::size_t most) {
+    Statement statement(*this, "SELECT warnings FROM task WHERE warnings != '' AND id IN (SELECT task FROM job_task WHERE job = ?) ORDER BY j, i LIMIT ?");
+    statement.bind(job).bind(static_cast<std::int64_t>(most));
+    std::vector<std::string> warnings;
+    for (;;) {
+        const auto row = statement.step();
+        if (!row) return tl::unexpected(row.error());
+        if (!*row) return warnings;
+        for (std::string& sentence : split(statement.text())) {
+            if (warnings.size() < most) warnings.push_back(std::move(sentence));
+        }
+    }
+}
+
 Result<void> Database::insert_task(TaskRow& task) {
-    Statement statement(*this, fmt::format("INSERT INTO task ({}) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", task_columns));
+    Statement statement(*this, fmt::format("INSERT INTO task ({}) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", task_columns));
     statement.bind_task(task);
     if (auto done = statement.run(); !done) return done;
     task.id = sqlite3_last_insert_rowid(handle_);
@@ -252,7 +286,7 @@ Result<void> Database::insert_task(TaskRow& task) {
 
 Result<void> Database::update_task(const TaskRow& task) {
     Statement statement(*this,
-                        "UPDATE task SET key = ?, manifest = ?, i = ?, j = ?, settings = ?, state = ?, failed_attempts = ?, result = ?, size = ?, probes = ?, rays = ?, error = ? "
+                        "UPDATE task SET key = ?, manifest = ?, i = ?, j = ?, settings = ?, state = ?, failed_attempts = ?, result = ?, size = ?, probes = ?, rays = ?, error = ?, warnings = ? "
                         "WHERE id = ?");
     statement.bind_task(task);
     return statement.bind(task.id).run();

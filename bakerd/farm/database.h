@@ -79,6 +79,8 @@ class Database {
     [[nodiscard]] Result<std::vector<TaskRow>> job_tasks(std::int64_t job, std::int64_t first = 0, std::int64_t count = INT64_MAX);
     [[nodiscard]] Result<std::optional<TaskRow>> job_task(std::int64_t job, map::SectorCoordinate sector);
     [[nodiscard]] Result<JobCounts> job_counts(std::int64_t job);
+    // The first `most` warnings of a job's sectors, in the order of (j, i).
+    [[nodiscard]] Result<std::vector<std::string>> job_warnings(std::int64_t job, std::size_t most);
 
     [[nodiscard]] Result<void> insert_task(TaskRow& task);
     [[nodiscard]] Result<void> update_task(const TaskRow& task);

@@ -331,11 +331,15 @@ Result<Farm::Job*> Farm::find_job(std::int64_t id) {
 }
 
 Result<JobView> Farm::view_of(const Job& job) {
-    JobView view{job.row, job.counts, job.rays, 0, 0, job.version};
+    JobView view{job.row, job.counts, job.rays, 0, 0, job.version, {}};
     if (job.row.state != JobState::running) {
         const auto counts = database_->job_counts(job.row.id);
         if (!counts) return tl::unexpected(counts.error());
         view.counts = *counts;
+        constexpr std::size_t most_warnings = 20;
+        auto warnings = database_->job_warnings(job.row.id, most_warnings);
+        if (!warnings) return tl::unexpected(warnings.error());
+        view.warnings = std::move(*warnings);
         return view;
     }
     if (job.started && job.baked > 0) {

@@ -36,6 +36,7 @@ struct JobView {
     std::int64_t rays = 0;  // of sectors baked since the server started
     double rays_per_second = 0, seconds_left = 0;
     std::uint64_t version = 0;  // grows with each change
+    std::vector<std::string> warnings;  // of its sectors, the first few; once it has ended
 };
 
 struct SectorView {

@@ -67,13 +67,14 @@ class Worker {
     What perform(const BakeRequest& request) {
         const MapResult loaded = map_of(request.manifest);
         if (!loaded) return loaded.error();
-        const auto sector = bake::bake_sector(*loaded->world, request.sector, request.settings);
-        if (!sector) return FailureAnswer{sector.error(), false};
-        const auto bytes = bake::encode_sector(*sector);
+        const auto baked = bake::bake_sector(*loaded->world, request.sector, request.settings);
+        if (!baked) return FailureAnswer{baked.error(), false};
+        const auto bytes = bake::encode_sector(baked->sector);
         if (!bytes) return FailureAnswer{bytes.error(), false};
         const auto digest = store_->put(*bytes);
         if (!digest) return FailureAnswer{digest.error().message, true};
-        return BakeAnswer{*digest, static_cast<std::int64_t>(bytes->size()), static_cast<std::int64_t>(sector->probes.size()), static_cast<std::int64_t>(sector->statistics.rays)};
+        const Sector& sector = baked->sector;
+        return BakeAnswer{*digest, static_cast<std::int64_t>(bytes->size()), static_cast<std::int64_t>(sector.probes.size()), static_cast<std::int64_t>(sector.statistics.rays), baked->warnings};
     }
 
     // Imports a map once, however many requests ask for it at the same time.
@@ -119,11 +120,9 @@ class Worker {
         auto imported = map::import_map(manifest->roots, manifest_source(*manifest, *store_));
         if (!imported) return tl::unexpected(FailureAnswer{imported.error(), false});
         auto map = std::make_shared<const map::Map>(std::move(*imported));
-        auto sectors = map::sectors_with_ground(*map);
-        if (!sectors) return tl::unexpected(FailureAnswer{sectors.error(), false});
         auto world = bake::World::open(device_, map);
         if (!world) return tl::unexpected(FailureAnswer{world.error(), false});
-        LoadedMap loaded{*world, {map->content, std::move(*sectors), static_cast<std::int64_t>(map->objects.size()), 0, map->warnings}};
+        LoadedMap loaded{*world, {map->content, (*world)->sectors_with_ground(), static_cast<std::int64_t>(map->objects.size()), 0, map->warnings}};
         for (const map::Object& object : map->objects) {
             for (const map::Primitive& primitive : map->meshes[object.mesh].primitives) loaded.summary.triangle_count += static_cast<std::int64_t>(primitive.triangles.size());
         }

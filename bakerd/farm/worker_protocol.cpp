@@ -22,9 +22,20 @@ Integer integer(const Json& json) {
 Json to_json(const map::SectorCoordinate& sector) { return Json::array({sector.i, sector.j}); }
 map::SectorCoordinate sector_from(const Json& json) { return {integer<std::int32_t>(json.at(0)), integer<std::int32_t>(json.at(1))}; }
 
-Json to_json(const bake::Settings& s) { return {{"rays", s.rays}, {"bounces", s.bounces}, {"reach", s.reach_m}, {"min_distance", s.min_distance_m}}; }
+Json to_json(const bake::Settings& s) {
+    return {{"rays", s.rays}, {"bounces", s.bounces}, {"reach", s.reach_m}, {"min_distance", s.min_distance_m}, {"error", s.error}, {"lprt", s.local_transfer}, {"lprt_bounces", s.local_bounces}, {"lprt_rays", s.local_rays}};
+}
 bake::Settings settings_from(const Json& json) {
-    return {integer<std::uint32_t>(json.at("rays")), integer<std::uint32_t>(json.at("bounces")), json.at("reach").get<float>(), json.at("min_distance").get<float>()};
+    bake::Settings s;
+    s.rays = integer<std::uint32_t>(json.at("rays"));
+    s.bounces = integer<std::uint32_t>(json.at("bounces"));
+    s.reach_m = json.at("reach").get<float>();
+    s.min_distance_m = json.at("min_distance").get<float>();
+    s.error = json.at("error").get<float>();
+    s.local_transfer = json.at("lprt").get<bool>();
+    s.local_bounces = integer<std::uint32_t>(json.at("lprt_bounces"));
+    s.local_rays = integer<std::uint32_t>(json.at("lprt_rays"));
+    return s;
 }
 
 map::Digest digest_from(const Json& json) {
@@ -69,7 +80,7 @@ std::string encode(const WorkerAnswer& answer) {
         for (const map::SectorCoordinate& sector : inspected->sectors) sectors.push_back(to_json(sector));
         json.update({{"content", to_hex(inspected->content)}, {"sectors", std::move(sectors)}, {"objects", inspected->object_count}, {"triangles", inspected->triangle_count}, {"warnings", inspected->warnings}});
     } else if (const auto* baked = std::get_if<BakeAnswer>(&answer.what)) {
-        json.update({{"result", to_hex(baked->result)}, {"size", baked->size_bytes}, {"probes", baked->probes}, {"rays", baked->rays}});
+        json.update({{"result", to_hex(baked->result)}, {"size", baked->size_bytes}, {"probes", baked->probes}, {"rays", baked->rays}, {"warnings", baked->warnings}});
     } else {
         const auto& failure = std::get<FailureAnswer>(answer.what);
         json.update({{"error", failure.sentence}, {"retry", failure.may_retry}});
@@ -84,7 +95,7 @@ std::optional<WorkerAnswer> decode_answer(std::string_view text) {
         if (json.contains("error")) {
             answer.what = FailureAnswer{json.at("error").get<std::string>(), json.at("retry").get<bool>()};
         } else if (json.contains("result")) {
-            answer.what = BakeAnswer{digest_from(json.at("result")), integer<std::int64_t>(json.at("size")), integer<std::int64_t>(json.at("probes")), integer<std::int64_t>(json.at("rays"))};
+            answer.what = BakeAnswer{digest_from(json.at("result")), integer<std::int64_t>(json.at("size")), integer<std::int64_t>(json.at("probes")), integer<std::int64_t>(json.at("rays")), json.at("warnings").get<std::vector<std::string>>()};
         } else {
             InspectAnswer inspected;
             inspected.content = digest_from(json.at("content"));

@@ -41,6 +41,7 @@ struct InspectAnswer {
 struct BakeAnswer {
     map::Digest result;
     std::int64_t size_bytes = 0, probes = 0, rays = 0;
+    std::vector<std::string> warnings;  // one sentence each
 };
 
 struct FailureAnswer {

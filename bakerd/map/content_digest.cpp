@@ -14,6 +14,14 @@ enum class Tag : std::uint32_t { texture = 1, material, primitive, mesh, object,
 // -0 and 0 bake alike.
 glm::vec3 plain(const glm::vec3& v) { return v + 0.0f; }
 
+void add_view(Hasher& hasher, const TextureView& view, const Map& map) {
+    hasher.add(view.present());
+    if (!view.present()) return;
+    hasher.add(map.textures[view.texture].digest);
+    hasher.add(plain(view.u_from_uv));
+    hasher.add(plain(view.v_from_uv));
+}
+
 // Puts things in the order of their digests, and the digests too.
 template <class Thing>
 void sort_by(std::vector<Digest>& digests, std::vector<Thing>& things) {
@@ -32,6 +40,8 @@ Digest digest_texture(const Texture& texture) {
     hasher.add(texture.height);
     hasher.add(texture.wrap_u);
     hasher.add(texture.wrap_v);
+    hasher.add(texture.coverage);
+    hasher.add(texture.cutoff);
     hasher.add_sized(texture.rgba);
     return hasher.finish();
 }
@@ -40,17 +50,14 @@ Digest digest_material(const Material& material, const Map& map) {
     Hasher hasher;
     hasher.add(Tag::material);
     hasher.add(plain(glm::vec3(material.base_colour)));
-    hasher.add(material.texture != no_texture);
-    if (material.texture != no_texture) {
-        hasher.add(map.textures[material.texture].digest);
-        hasher.add(plain(material.texture_u_from_uv));
-        hasher.add(plain(material.texture_v_from_uv));
-    }
-    hasher.add(material.masked);
-    if (material.masked) {
-        hasher.add(material.base_colour.w);
-        hasher.add(material.alpha_cutoff);
-    }
+    add_view(hasher, material.base_texture, map);
+    hasher.add(plain(material.emission));
+    add_view(hasher, material.emission_texture, map);
+    hasher.add(material.transmission);
+    if (material.transmission > 0) hasher.add(plain(material.transmission_colour));
+    hasher.add(material.alpha_mode);
+    if (material.alpha_mode != AlphaMode::opaque) hasher.add(material.base_colour.w);
+    if (material.alpha_mode == AlphaMode::mask) hasher.add(material.alpha_cutoff);
     hasher.add(material.double_sided);
     return hasher.finish();
 }
@@ -61,6 +68,7 @@ Digest digest_primitive(const Primitive& primitive, const Map& map) {
     hasher.add_sized(primitive.positions);
     hasher.add_sized(primitive.triangles);
     hasher.add_sized(primitive.uvs);
+    hasher.add_sized(primitive.emission_uvs);
     hasher.add_sized(primitive.colours);
     hasher.add(map.materials[primitive.material].digest);
     return hasher.finish();

@@ -17,9 +17,10 @@ constexpr int max_depth = 64;
 
 constexpr std::array supported_extensions = {
     "EXT_mesh_gpu_instancing",     "KHR_lights_punctual",           "KHR_materials_anisotropy",   "KHR_materials_clearcoat",
-    "KHR_materials_dispersion",    "KHR_materials_emissive_strength", "KHR_materials_ior",        "KHR_materials_iridescence",
-    "KHR_materials_sheen",         "KHR_materials_specular",        "KHR_materials_unlit",        "KHR_materials_variants",
-    "KHR_mesh_quantization",       "KHR_texture_transform",         "KHR_animation_pointer",      "KHR_xmp_json_ld"};
+    "KHR_materials_diffuse_transmission", "KHR_materials_dispersion", "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_materials_iridescence",   "KHR_materials_sheen",           "KHR_materials_specular",     "KHR_materials_unlit",
+    "KHR_materials_variants",      "KHR_mesh_quantization",         "KHR_texture_transform",      "KHR_animation_pointer",
+    "KHR_xmp_json_ld"};
 
 // Not by the parser's callback: with one, it walks all siblings of each object that ends.
 bool nested_deeper(std::string_view json, int levels) {
@@ -138,23 +139,43 @@ Failure check_mesh(const Checker& check, Json& mesh, const std::string& where) {
     return {};
 }
 
-Failure check_material(const Checker& check, Json& material, const std::string& where) {
-    if (Failure failure = check.properties(material, where,
-                                           {{"pbrMetallicRoughness", Type::object}, {"alphaMode", Type::string}, {"alphaCutoff", Type::number}, {"doubleSided", Type::boolean}})) {
-        return failure;
-    }
-    const auto pbr = material.find("pbrMetallicRoughness");
-    if (pbr == material.end()) return {};
-    if (Failure failure = check.properties(*pbr, where, {{"baseColorFactor", Type::number_array, false, 4}, {"baseColorTexture", Type::object}})) return failure;
-    const auto texture = pbr->find("baseColorTexture");
-    if (texture == pbr->end()) return {};
-    if (Failure failure = check.properties(*texture, where + " baseColorTexture", {{"index", Type::index, true, 0, "textures"}, {"texCoord", Type::index}, {"extensions", Type::object}})) {
+Failure check_texture(const Checker& check, Json& owner, const char* name, const std::string& where) {
+    const auto texture = owner.find(name);
+    if (texture == owner.end()) return {};
+    if (Failure failure = check.properties(*texture, where + " " + name, {{"index", Type::index, true, 0, "textures"}, {"texCoord", Type::index}, {"extensions", Type::object}})) {
         return failure;
     }
     Json* transform = extension_of(*texture, "KHR_texture_transform");
     if (transform == nullptr) return {};
     return check.properties(*transform, where + ": KHR_texture_transform",
                             {{"offset", Type::number_array, false, 2}, {"scale", Type::number_array, false, 2}, {"rotation", Type::number}, {"texCoord", Type::index}});
+}
+
+Failure check_material(const Checker& check, Json& material, const std::string& where) {
+    if (Failure failure = check.properties(material, where,
+                                           {{"pbrMetallicRoughness", Type::object},
+                                            {"alphaMode", Type::string},
+                                            {"alphaCutoff", Type::number},
+                                            {"doubleSided", Type::boolean},
+                                            {"emissiveFactor", Type::number_array, false, 3},
+                                            {"emissiveTexture", Type::object},
+                                            {"extensions", Type::object}})) {
+        return failure;
+    }
+    if (Failure failure = check_texture(check, material, "emissiveTexture", where)) return failure;
+    if (Json* strength = extension_of(material, "KHR_materials_emissive_strength")) {
+        if (Failure failure = check.properties(*strength, where + ": KHR_materials_emissive_strength", {{"emissiveStrength", Type::number}})) return failure;
+    }
+    if (Json* transmission = extension_of(material, "KHR_materials_diffuse_transmission")) {
+        if (Failure failure = check.properties(*transmission, where + ": KHR_materials_diffuse_transmission",
+                                               {{"diffuseTransmissionFactor", Type::number}, {"diffuseTransmissionColorFactor", Type::number_array, false, 3}})) {
+            return failure;
+        }
+    }
+    const auto pbr = material.find("pbrMetallicRoughness");
+    if (pbr == material.end()) return {};
+    if (Failure failure = check.properties(*pbr, where, {{"baseColorFactor", Type::number_array, false, 4}, {"baseColorTexture", Type::object}})) return failure;
+    return check_texture(check, *pbr, "baseColorTexture", where);
 }
 
 Failure check_lights(const Checker& check, Json& root, std::size_t& light_count) {

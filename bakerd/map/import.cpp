@@ -49,7 +49,8 @@ tl::expected<Map, std::string> import_files(std::span<const std::string> paths, 
     return map;
 }
 
-// One line of sensible length, whatever stands in the names that the file gave.
+}  // namespace
+
 std::string as_sentence(std::string text) {
     constexpr std::size_t max_length = 500;
     if (text.size() > max_length) text = text.substr(0, max_length) + "...";
@@ -58,8 +59,6 @@ std::string as_sentence(std::string text) {
     }
     return text;
 }
-
-}  // namespace
 
 tl::expected<Map, std::string> import_map(std::span<const std::string> paths, const FileSource& files) { return import_files(paths, files).map_error(as_sentence); }
 

@@ -28,7 +28,17 @@ struct Shared {
         }
     };
     std::unordered_map<Digest, std::uint32_t, HashDigest> textures, materials, meshes;
+    std::unordered_map<std::uint32_t, glm::vec3> brightest;  // by texture
 };
+
+// One line of sensible length, whatever stands in the names that the file gave.
+[[nodiscard]] std::string as_sentence(std::string text);
+
+// Adds a warning to the map, once.
+void warn(Map& map, const std::string& sentence);
+
+// "material 3 ('wall')"; -1 is glTF's default material.
+[[nodiscard]] std::string name_of_material(const GltfDocument& document, int material);
 
 [[nodiscard]] tl::expected<MaterialIndices, std::string> import_materials(const GltfDocument& document, Map& map, Shared& shared);
 

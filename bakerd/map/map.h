@@ -35,26 +35,67 @@ inline constexpr float max_height_m = 8192;
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 
+// How much of a texel is there: what averages of its colour count it with.
+enum class Coverage : std::uint8_t {
+    whole,   // all of it: alpha has no say
+    alpha,   // its alpha
+    cutoff,  // all or nothing, by Texture::cutoff
+};
+
+// A picture at half the size or less: 16-bit linear RGBA. Colour is multiplied by coverage, coverage stands in w.
+struct MipLevel {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint16_t> rgba;
+};
+
+// Least and largest alpha of a block of texels.
+struct AlphaRange {
+    std::uint8_t low = 255, high = 255;
+};
+
 // A decoded picture with the sampler's wrapping: RGBA, 8 bits, colour still sRGB-encoded, alpha linear.
 struct Texture {
     std::uint32_t width = 0, height = 0;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    Coverage coverage = Coverage::whole;
+    float cutoff = 0;                // of alpha; Coverage::cutoff only
     std::vector<std::uint8_t> rgba;  // rows from v = 0
+    std::vector<MipLevel> mips;      // level 1 and up, to 1 x 1
+    std::vector<AlphaRange> alpha_blocks;  // 8 x 8 texels each, row by row; empty where coverage is whole
     Digest digest;
 };
 
 inline constexpr std::uint32_t no_texture = UINT32_MAX;
 
-// Albedo is base colour factor x texture x vertex colour, linear Rec. 709, at most max_albedo.
+// A texture as a material wears it: its uv = (row 0, row 1) . (u, v, 1), from KHR_texture_transform.
+struct TextureView {
+    std::uint32_t texture = no_texture;
+    glm::vec3 u_from_uv{1, 0, 0}, v_from_uv{0, 1, 0};
+
+    [[nodiscard]] bool present() const { return texture != no_texture; }
+};
+
+// Albedo is base colour factor x texture x vertex colour, linear Rec. 709, at most max_albedo; where a surface also
+// transmits, both together are at most that. Metals and unlit materials are no exception: they send their base
+// colour back as Lambert surfaces do, and an unlit one shines no light.
 inline constexpr float max_albedo = 0.95f;
+
+enum class AlphaMode : std::uint8_t {
+    opaque,
+    mask,   // there where alpha is at least the cutoff
+    blend,  // there with the probability alpha
+};
 
 struct Material {
     glm::vec4 base_colour{1};  // linear; w is alpha
-    std::uint32_t texture = no_texture;
-    // uv of the texture = (row 0, row 1) . (u, v, 1), from KHR_texture_transform.
-    glm::vec3 texture_u_from_uv{1, 0, 0}, texture_v_from_uv{0, 1, 0};
-    bool masked = false;        // alpha below the cutoff lets rays through
-    float alpha_cutoff = 0.5f;
+    TextureView base_texture;
+    glm::vec3 emission{0};  // radiance of the front (of both sides where double_sided), nits: factor x strength
+    TextureView emission_texture;
+    // KHR_materials_diffuse_transmission: the share of light that goes through instead of back, and its colour.
+    float transmission = 0;
+    glm::vec3 transmission_colour{1};
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5f;  // AlphaMode::mask only
     bool double_sided = false;  // reflects on both sides; else its back absorbs
     Digest digest;
 };
@@ -63,7 +104,8 @@ struct Material {
 struct Primitive {
     std::vector<glm::vec3> positions;   // object space
     std::vector<glm::uvec3> triangles;  // counter-clockwise seen from the front
-    std::vector<glm::vec2> uvs;         // empty unless the material has a texture
+    std::vector<glm::vec2> uvs;         // of the base texture; empty unless the material has one
+    std::vector<glm::vec2> emission_uvs;  // of the emission texture; empty unless the material has one
     std::vector<glm::vec4> colours;     // linear; empty unless the mesh has them
     std::uint32_t material = 0;
     Digest digest;
@@ -107,7 +149,7 @@ struct Volume {
 
 enum class LightKind : std::uint8_t { point, spot, directional };
 
-// KHR_lights_punctual, in its own units (candela or lux); range 0 means unlimited.
+// KHR_lights_punctual, in its own units (candela, or lux for directional); range 0 means unlimited.
 struct Light {
     LightKind kind = LightKind::point;
     glm::vec3 colour{1};

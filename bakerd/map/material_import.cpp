@@ -4,9 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <compare>
 #include <map>
-#include <tuple>
 
 namespace drtv::map {
 namespace {
@@ -20,9 +21,12 @@ Wrap wrap_of(int mode) {
 // Far beyond any picture; further out, coordinates would overflow.
 constexpr float max_transform = 1e6f;
 
+// Nits; the sun's disk has 1.6e9.
+constexpr double max_emission = 1e12;
+
 // KHR_texture_transform: offset, rotation, scale, in that order around the texture's origin. The document's check
 // saw to the types.
-tl::expected<void, std::string> apply_texture_transform(const tinygltf::Value& extension, Material& material) {
+tl::expected<void, std::string> apply_texture_transform(const tinygltf::Value& extension, TextureView& view) {
     glm::dvec2 offset(0), scale(1);
     const auto read_pair = [&](const char* name, glm::dvec2& pair) {
         if (extension.Has(name)) pair = {extension.Get(name).Get(0).GetNumberAsDouble(), extension.Get(name).Get(1).GetNumberAsDouble()};
@@ -31,9 +35,9 @@ tl::expected<void, std::string> apply_texture_transform(const tinygltf::Value& e
     read_pair("scale", scale);
     const double rotation = extension.Has("rotation") ? extension.Get("rotation").GetNumberAsDouble() : 0;
     const double c = std::cos(rotation), s = std::sin(rotation);
-    material.texture_u_from_uv = glm::vec3(glm::dvec3(c * scale.x, s * scale.y, offset.x));
-    material.texture_v_from_uv = glm::vec3(glm::dvec3(-s * scale.x, c * scale.y, offset.y));
-    for (const glm::vec3& row : {material.texture_u_from_uv, material.texture_v_from_uv}) {
+    view.u_from_uv = glm::vec3(glm::dvec3(c * scale.x, s * scale.y, offset.x));
+    view.v_from_uv = glm::vec3(glm::dvec3(-s * scale.x, c * scale.y, offset.y));
+    for (const glm::vec3& row : {view.u_from_uv, view.v_from_uv}) {
         for (glm::length_t k = 0; k < 3; ++k) {
             if (!(std::abs(row[k]) <= max_transform)) return tl::unexpected(fmt::format("KHR_texture_transform: {} is over the limit of {}", row[k], max_transform));
         }
@@ -41,36 +45,144 @@ tl::expected<void, std::string> apply_texture_transform(const tinygltf::Value& e
     return {};
 }
 
-// Index into Map::textures of an image with a wrapping, once decoded: many materials may share a picture.
-using Decoded = std::map<std::tuple<int, Wrap, Wrap>, std::uint32_t>;
-
-tl::expected<std::uint32_t, std::string> import_texture(const GltfDocument& document, int texture_index, const std::string& where, Map& map, Shared& shared, Decoded& decoded) {
-    const tinygltf::Model& model = document.model;
-    const auto fail = [&](const std::string& rest) { return tl::unexpected(document.at(where + ": " + rest)); };
-    const tinygltf::Texture& source = model.textures[static_cast<std::size_t>(texture_index)];
-    if (source.source < 0) return fail(fmt::format("texture {} has no PNG or JPEG source", texture_index));
+// A picture as materials use it: many may share one.
+struct Use {
+    int image = 0;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    if (source.sampler >= 0) {
-        const tinygltf::Sampler& sampler = model.samplers[static_cast<std::size_t>(source.sampler)];
-        wrap_u = wrap_of(sampler.wrapS);
-        wrap_v = wrap_of(sampler.wrapT);
-    }
-    const auto known = decoded.find({source.source, wrap_u, wrap_v});
-    if (known != decoded.end()) return known->second;
+    Coverage coverage = Coverage::whole;
+    float cutoff = 0;
 
-    const tinygltf::Image& image = model.images[static_cast<std::size_t>(source.source)];
-    const std::string image_name = image.name.empty() ? fmt::format("image {}", source.source) : fmt::format("image {} ('{}')", source.source, image.name);
-    if (image.image.empty()) return fail(fmt::format("{} has no bytes; is the file missing?", image_name));
-    auto texture = decode_texture(image.image);
-    if (!texture) return fail(fmt::format("{}: {}", image_name, texture.error()));
-    texture->wrap_u = wrap_u;
-    texture->wrap_v = wrap_v;
-    texture->digest = digest_texture(*texture);
-    const auto [entry, added] = shared.textures.try_emplace(texture->digest, static_cast<std::uint32_t>(map.textures.size()));
-    if (added) map.textures.push_back(std::move(*texture));
-    decoded.emplace(std::tuple(source.source, wrap_u, wrap_v), entry->second);
-    return entry->second;
-}
+    auto operator<=>(const Use&) const = default;
+};
+
+// The materials of one document on their way into the map.
+class MaterialImporter {
+  public:
+    MaterialImporter(const GltfDocument& document, Map& map, Shared& shared) : document_(document), map_(map), shared_(shared) {}
+
+    tl::expected<Material, std::string> import(const tinygltf::Material& source, const std::string& where) {
+        where_ = where;
+        Material material;
+        if (auto read = read_base(source, material); !read) return tl::unexpected(read.error());
+        if (auto read = read_emission(source, material); !read) return tl::unexpected(read.error());
+        if (auto read = read_transmission(source, material); !read) return tl::unexpected(read.error());
+        return material;
+    }
+
+  private:
+    [[nodiscard]] tl::unexpected<std::string> fail(const std::string& rest) const { return tl::unexpected(document_.at(where_ + ": " + rest)); }
+
+    Imported read_base(const tinygltf::Material& source, Material& material) {
+        const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+        for (std::size_t k = 0; k < 4 && k < pbr.baseColorFactor.size(); ++k) {
+            const double factor = pbr.baseColorFactor[k];
+            if (!(factor >= 0 && factor <= 1)) return fail(fmt::format("baseColorFactor {} lies outside [0, 1]", factor));
+            material.base_colour[static_cast<glm::length_t>(k)] = static_cast<float>(factor);
+        }
+        if (source.alphaMode == "MASK") {
+            material.alpha_mode = AlphaMode::mask;
+            material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
+        } else if (source.alphaMode == "BLEND") {
+            material.alpha_mode = AlphaMode::blend;
+        } else if (!source.alphaMode.empty() && source.alphaMode != "OPAQUE") {
+            return fail(fmt::format("alphaMode '{}' is unknown", source.alphaMode));
+        }
+        material.double_sided = source.doubleSided;
+        Coverage coverage = Coverage::whole;
+        float cutoff = 0;
+        if (material.alpha_mode == AlphaMode::blend) coverage = Coverage::alpha;
+        if (material.alpha_mode == AlphaMode::mask && material.base_colour.w > 0) {
+            coverage = Coverage::cutoff;
+            cutoff = material.alpha_cutoff / material.base_colour.w;
+        }
+        return read_view(pbr.baseColorTexture, coverage, cutoff, material.base_texture);
+    }
+
+    Imported read_emission(const tinygltf::Material& source, Material& material) {
+        double strength = 1;
+        const auto extension = source.extensions.find("KHR_materials_emissive_strength");
+        if (extension != source.extensions.end() && extension->second.Has("emissiveStrength")) strength = extension->second.Get("emissiveStrength").GetNumberAsDouble();
+        if (!(strength >= 0 && strength <= max_emission)) return fail(fmt::format("emissiveStrength {} lies outside [0, {}]", strength, max_emission));
+        for (std::size_t k = 0; k < 3 && k < source.emissiveFactor.size(); ++k) {
+            const double factor = source.emissiveFactor[k];
+            if (!(factor >= 0 && factor <= max_emission)) return fail(fmt::format("emissiveFactor {} lies outside [0, {}]", factor, max_emission));
+            material.emission[static_cast<glm::length_t>(k)] = static_cast<float>(factor * strength);
+        }
+        if (material.emission == glm::vec3(0)) return {};  // then the picture shines nowhere
+        return read_view(source.emissiveTexture, Coverage::whole, 0, material.emission_texture);
+    }
+
+    Imported read_transmission(const tinygltf::Material& source, Material& material) {
+        const auto extension = source.extensions.find("KHR_materials_diffuse_transmission");
+        if (extension == source.extensions.end()) return {};
+        const tinygltf::Value& value = extension->second;
+        const double factor = value.Has("diffuseTransmissionFactor") ? value.Get("diffuseTransmissionFactor").GetNumberAsDouble() : 0;
+        if (!(factor >= 0 && factor <= 1)) return fail(fmt::format("diffuseTransmissionFactor {} lies outside [0, 1]", factor));
+        material.transmission = static_cast<float>(factor);
+        if (value.Has("diffuseTransmissionColorFactor")) {
+            for (int k = 0; k < 3; ++k) {
+                const double colour = value.Get("diffuseTransmissionColorFactor").Get(k).GetNumberAsDouble();
+                if (!(colour >= 0 && colour <= 1)) return fail(fmt::format("diffuseTransmissionColorFactor {} lies outside [0, 1]", colour));
+                material.transmission_colour[k] = static_cast<float>(colour);
+            }
+        }
+        for (const char* texture : {"diffuseTransmissionTexture", "diffuseTransmissionColorTexture"}) {
+            if (value.Has(texture)) warn(map_, document_.at(fmt::format("{}: its {} is ignored, the factors alone count", where_, texture)));
+        }
+        return {};
+    }
+
+    // Of tinygltf's TextureInfo or what looks like it.
+    template <class TextureInfo>
+    Imported read_view(const TextureInfo& info, Coverage coverage, float cutoff, TextureView& view) {
+        if (info.index < 0) return {};
+        const auto texture = texture_index(info.index, coverage, cutoff);
+        if (!texture) return tl::unexpected(texture.error());
+        view.texture = *texture;
+        const auto transform = info.extensions.find("KHR_texture_transform");
+        if (transform == info.extensions.end()) return {};
+        if (auto applied = apply_texture_transform(transform->second, view); !applied) return fail(applied.error());
+        return {};
+    }
+
+    tl::expected<std::uint32_t, std::string> texture_index(int index, Coverage coverage, float cutoff) {
+        const tinygltf::Model& model = document_.model;
+        const tinygltf::Texture& source = model.textures[static_cast<std::size_t>(index)];
+        if (source.source < 0) return fail(fmt::format("texture {} has no PNG or JPEG source", index));
+        Use use{source.source, Wrap::repeat, Wrap::repeat, coverage, cutoff};
+        if (source.sampler >= 0) {
+            const tinygltf::Sampler& sampler = model.samplers[static_cast<std::size_t>(source.sampler)];
+            use.wrap_u = wrap_of(sampler.wrapS);
+            use.wrap_v = wrap_of(sampler.wrapT);
+        }
+        const auto known = decoded_.find(use);
+        if (known != decoded_.end()) return known->second;
+
+        const tinygltf::Image& image = model.images[static_cast<std::size_t>(source.source)];
+        const std::string image_name = image.name.empty() ? fmt::format("image {}", source.source) : fmt::format("image {} ('{}')", source.source, image.name);
+        if (image.image.empty()) return fail(fmt::format("{} has no bytes; is the file missing?", image_name));
+        auto texture = decode_texture(image.image);
+        if (!texture) return fail(fmt::format("{}: {}", image_name, texture.error()));
+        texture->wrap_u = use.wrap_u;
+        texture->wrap_v = use.wrap_v;
+        texture->coverage = coverage;
+        texture->cutoff = cutoff;
+        texture->digest = digest_texture(*texture);
+        const auto [entry, added] = shared_.textures.try_emplace(texture->digest, static_cast<std::uint32_t>(map_.textures.size()));
+        if (added) {
+            prefilter(*texture);
+            map_.textures.push_back(std::move(*texture));
+        }
+        decoded_.emplace(use, entry->second);
+        return entry->second;
+    }
+
+    const GltfDocument& document_;
+    Map& map_;
+    Shared& shared_;
+    std::map<Use, std::uint32_t> decoded_;  // index into Map::textures
+    std::string where_;
+};
 
 std::uint32_t keep(Material material, Map& map, Shared& shared) {
     material.digest = digest_material(material, map);
@@ -92,45 +204,29 @@ std::vector<bool> worn_materials(const tinygltf::Model& model) {
 
 }  // namespace
 
+void warn(Map& map, const std::string& sentence) {
+    constexpr std::size_t most = 100;  // more, nobody reads
+    if (map.warnings.size() < most && std::ranges::find(map.warnings, sentence) == map.warnings.end()) map.warnings.push_back(as_sentence(sentence));
+}
+
+std::string name_of_material(const GltfDocument& document, int material) {
+    if (material < 0) return "glTF's default material";
+    const std::string& name = document.model.materials[static_cast<std::size_t>(material)].name;
+    return name.empty() ? fmt::format("material {}", material) : fmt::format("material {} ('{}')", material, name);
+}
+
 tl::expected<MaterialIndices, std::string> import_materials(const GltfDocument& document, Map& map, Shared& shared) {
     MaterialIndices indices;
-    Decoded decoded;
+    MaterialImporter importer(document, map, shared);
     const std::vector<bool> worn = worn_materials(document.model);
     for (std::size_t n = 0; n < document.model.materials.size(); ++n) {
         if (!worn[n]) {
             indices.push_back(UINT32_MAX);
             continue;
         }
-        const tinygltf::Material& source = document.model.materials[n];
-        const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-        const std::string where = source.name.empty() ? fmt::format("material {}", n) : fmt::format("material {} ('{}')", n, source.name);
-        Material material;
-        for (std::size_t k = 0; k < 4 && k < pbr.baseColorFactor.size(); ++k) {
-            const double factor = pbr.baseColorFactor[k];
-            if (!(factor >= 0 && factor <= 1)) return tl::unexpected(document.at(fmt::format("{}: baseColorFactor {} lies outside [0, 1]", where, factor)));
-            material.base_colour[static_cast<glm::length_t>(k)] = static_cast<float>(factor);
-        }
-        if (source.alphaMode == "MASK") {
-            material.masked = true;
-            material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-        } else if (source.alphaMode == "BLEND") {
-            // A blended surface is there or not at each point: the more opaque half of it is.
-            material.masked = true;
-            material.alpha_cutoff = 0.5f;
-        } else if (!source.alphaMode.empty() && source.alphaMode != "OPAQUE") {
-            return tl::unexpected(document.at(fmt::format("{}: alphaMode '{}' is unknown", where, source.alphaMode)));
-        }
-        material.double_sided = source.doubleSided;
-        if (pbr.baseColorTexture.index >= 0) {
-            const auto texture = import_texture(document, pbr.baseColorTexture.index, where, map, shared, decoded);
-            if (!texture) return tl::unexpected(texture.error());
-            material.texture = *texture;
-            const auto transform = pbr.baseColorTexture.extensions.find("KHR_texture_transform");
-            if (transform != pbr.baseColorTexture.extensions.end()) {
-                if (auto applied = apply_texture_transform(transform->second, material); !applied) return tl::unexpected(document.at(where + ": " + applied.error()));
-            }
-        }
-        indices.push_back(keep(material, map, shared));
+        auto material = importer.import(document.model.materials[n], name_of_material(document, static_cast<int>(n)));
+        if (!material) return tl::unexpected(material.error());
+        indices.push_back(keep(*material, map, shared));
     }
     indices.push_back(keep(Material{}, map, shared));
     return indices;

@@ -1,6 +1,7 @@
 #include "bakerd/map/import_parts.h"
 
 #include "bakerd/map/accessor.h"
+#include "bakerd/map/texture.h"
 
 #include <fmt/format.h>
 
@@ -31,7 +32,7 @@ Triangles assemble(const std::vector<std::uint32_t>& indices, int mode) {
 }
 
 struct Attributes {
-    std::vector<float> positions, uvs, colours;
+    std::vector<float> positions, uvs, emission_uvs, colours;
     std::size_t vertex_count = 0, colour_components = 0;
 };
 
@@ -56,16 +57,24 @@ tl::expected<Attributes, std::string> read_attributes(const GltfDocument& docume
     attributes.vertex_count = attributes.positions.size() / 3;
     if (attributes.vertex_count == 0) return attributes;
 
-    if (material.texture != no_texture) {
-        const auto& texture = document.model.materials[static_cast<std::size_t>(source.material)].pbrMetallicRoughness.baseColorTexture;
+    const auto read_uvs = [&](const auto& texture) -> tl::expected<std::vector<float>, std::string> {
         int set = texture.texCoord;
         const auto transform = texture.extensions.find("KHR_texture_transform");
         if (transform != texture.extensions.end() && transform->second.Has("texCoord") && transform->second.Get("texCoord").IsNumber()) set = transform->second.Get("texCoord").GetNumberAsInt();
         auto uvs = read_attribute(document, source, fmt::format("TEXCOORD_{}", set), 2, where, attributes.vertex_count);
+        // Without coordinates a texture shows its first texel everywhere, as renderers do.
+        if (uvs && uvs->empty()) uvs->assign(attributes.vertex_count * 2, 0.0f);
+        return uvs;
+    };
+    if (material.base_texture.present()) {
+        auto uvs = read_uvs(document.model.materials[static_cast<std::size_t>(source.material)].pbrMetallicRoughness.baseColorTexture);
         if (!uvs) return tl::unexpected(uvs.error());
         attributes.uvs = std::move(*uvs);
-        // Without coordinates a texture shows its first texel everywhere, as renderers do.
-        if (attributes.uvs.empty()) attributes.uvs.assign(attributes.vertex_count * 2, 0.0f);
+    }
+    if (material.emission_texture.present()) {
+        auto uvs = read_uvs(document.model.materials[static_cast<std::size_t>(source.material)].emissiveTexture);
+        if (!uvs) return tl::unexpected(uvs.error());
+        attributes.emission_uvs = std::move(*uvs);
     }
     const auto colour = source.attributes.find("COLOR_0");
     if (colour != source.attributes.end()) {
@@ -91,7 +100,9 @@ Primitive compact(const Attributes& attributes, Triangles triangles, std::uint32
                 fresh = static_cast<std::uint32_t>(primitive.positions.size());
                 const float* p = &attributes.positions[std::size_t{old} * 3];
                 primitive.positions.push_back(glm::vec3(p[0], p[1], p[2]) + 0.0f);  // no negative zeros
-                if (!attributes.uvs.empty()) primitive.uvs.push_back(glm::vec2(attributes.uvs[std::size_t{old} * 2], attributes.uvs[std::size_t{old} * 2 + 1]) + 0.0f);
+                const auto uv_of = [old](const std::vector<float>& uvs) { return glm::vec2(uvs[std::size_t{old} * 2], uvs[std::size_t{old} * 2 + 1]) + 0.0f; };
+                if (!attributes.uvs.empty()) primitive.uvs.push_back(uv_of(attributes.uvs));
+                if (!attributes.emission_uvs.empty()) primitive.emission_uvs.push_back(uv_of(attributes.emission_uvs));
                 if (!attributes.colours.empty()) {
                     const float* c = &attributes.colours[std::size_t{old} * attributes.colour_components];
                     primitive.colours.emplace_back(glm::clamp(glm::vec4(c[0], c[1], c[2], attributes.colour_components == 4 ? c[3] : 1.0f), 0.0f, 1.0f));
@@ -128,6 +139,26 @@ tl::expected<Primitive, std::string> import_primitive(const GltfDocument& docume
     return compact(*attributes, assemble(indices, mode), material);
 }
 
+// A surface that sends back more than max_albedo is more likely a mistake than snow, and light in a room of it would
+// hardly ever end.
+void warn_of_brightness(const GltfDocument& document, int gltf_material, const Primitive& primitive, Map& map, Shared& shared) {
+    const Material& material = map.materials[primitive.material];
+    glm::vec3 albedo(material.base_colour);
+    const auto too_bright = [&] { return std::max({albedo.x, albedo.y, albedo.z}) > max_albedo; };
+    if (!too_bright()) return;
+    if (!primitive.colours.empty()) {
+        glm::vec3 most(0);
+        for (const glm::vec4& colour : primitive.colours) most = glm::max(most, glm::vec3(colour));
+        albedo *= most;
+    }
+    if (material.base_texture.present()) {
+        const auto [entry, added] = shared.brightest.try_emplace(material.base_texture.texture);
+        if (added) entry->second = brightest(map.textures[material.base_texture.texture]);
+        albedo *= entry->second;
+    }
+    if (too_bright()) warn(map, document.at(fmt::format("{}: its albedo reaches {:.3g}, and counts as {}", name_of_material(document, gltf_material), std::max({albedo.x, albedo.y, albedo.z}), max_albedo)));
+}
+
 }  // namespace
 
 Imported check_mesh_sizes(const GltfDocument& document) {
@@ -151,6 +182,7 @@ tl::expected<std::uint32_t, std::string> import_mesh(const GltfDocument& documen
         if (!primitive) return tl::unexpected(primitive.error());
         if (primitive->triangles.empty()) continue;
         primitive->digest = digest_primitive(*primitive, map);
+        warn_of_brightness(document, source.primitives[n].material, *primitive, map, shared);
         for (const glm::vec3& position : primitive->positions) mesh.bounds.extend(position);
         mesh.primitives.push_back(std::move(*primitive));
     }

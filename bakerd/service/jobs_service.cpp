@@ -49,6 +49,7 @@ void fill(const farm::JobView& view, v1::Job& out) {
     out.set_seconds_left(view.seconds_left);
     out.set_create_time_seconds(row.created_seconds);
     out.set_end_time_seconds(row.ended_seconds);
+    for (const std::string& warning : view.warnings) out.add_warnings(warning);
 }
 
 grpc::Status answer(const farm::Result<farm::JobView>& view, v1::Job* response) {

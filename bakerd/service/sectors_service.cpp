@@ -32,6 +32,7 @@ void fill(const farm::SectorView& view, v1::Sector& out) {
     out.set_size_bytes(row.result.size_bytes);
     out.set_probes(row.result.probes);
     out.set_rays(row.result.rays);
+    for (const std::string& warning : row.result.warnings) out.add_warnings(warning);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "bakerd/map/map.h"
 #include "bakerd/trace/device.h"
+#include "bakerd/trace/triangle_set.h"
 
 #include <cstdint>
 #include <memory>
@@ -22,16 +23,13 @@ class MeshBvh {
     MeshBvh& operator=(const MeshBvh&) = delete;
 
     [[nodiscard]] RTCSceneTy* handle() const { return handle_; }
+    [[nodiscard]] const TriangleSet& set(std::uint32_t embree_geometry) const { return *sets_[embree_geometry]; }
 
   private:
-    // What a filter needs to decide about alpha, one an Embree geometry.
-    struct Alpha;
     std::shared_ptr<const Device> device_;
     std::shared_ptr<const map::Map> map_;
-    std::vector<std::unique_ptr<Alpha>> alphas_;
+    std::vector<std::unique_ptr<TriangleSet>> sets_;  // by Embree's geometry id
     RTCSceneTy* handle_;
-
-    friend struct Filters;
 };
 
 // The meshes of one map. Thread-safe.

@@ -10,10 +10,11 @@
 
 namespace drtv::trace {
 
-// Which triangle: instance in the scene, primitive of the mesh, triangle of the primitive.
+// Which triangle, in Embree's numbers: instance in the scene, triangle set of its mesh, triangle of the set. All three
+// follow the order of the content (TriangleSet), so that the smaller one does too.
 struct TriangleId {
-    std::uint32_t instance = 0, primitive = 0, triangle = 0;
-    bool operator<(const TriangleId& o) const { return std::tie(instance, primitive, triangle) < std::tie(o.instance, o.primitive, o.triangle); }
+    std::uint32_t instance = 0, set = 0, triangle = 0;
+    bool operator<(const TriangleId& o) const { return std::tie(instance, set, triangle) < std::tie(o.instance, o.set, o.triangle); }
     bool operator==(const TriangleId&) const = default;
 };
 

@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace drtv::trace {
@@ -18,10 +19,22 @@ bool overlaps(const map::Bounds& bounds, const Region& region, float margin_m) {
            bounds.high.y >= region.low.y - margin_m;
 }
 
+bool mirrors(const glm::mat4x3& world_from_object) {
+    const glm::dvec3 x(world_from_object[0]), y(world_from_object[1]), z(world_from_object[2]);
+    return glm::dot(glm::cross(x, y), z) < 0;
+}
+
+// Terrain and the like is cut to what lies within reach and put into world space: its memory follows the reach too, and
+// rays near it need no transform. It must depend on the object alone: a hit's last digits are not the same either way.
+bool is_large(const map::Bounds& bounds) {
+    constexpr float side_m = 128;
+    return std::max(bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y) > side_m;
+}
+
 // In double: a cofactor matrix, which needs no division and keeps the side even where the map mirrors.
 glm::mat3 normal_transform(const glm::mat4x3& world_from_object) {
     const glm::dvec3 x(world_from_object[0]), y(world_from_object[1]), z(world_from_object[2]);
-    const double sign = glm::dot(glm::cross(x, y), z) < 0 ? -1 : 1;
+    const double sign = mirrors(world_from_object) ? -1 : 1;
     return glm::mat3(glm::dmat3(glm::cross(y, z) * sign, glm::cross(z, x) * sign, glm::cross(x, y) * sign));
 }
 
@@ -36,6 +49,20 @@ std::optional<double> height_on_triangle(const map::Object& object, const map::P
     if (std::abs(normal.z) <= 1e-6 * glm::length(normal)) return std::nullopt;
     const double z_m = a.z - (normal.x * (double{at.x} - a.x) + normal.y * (double{at.y} - a.y)) / normal.z;
     return std::clamp(z_m, std::min({a.z, b.z, c.z}), std::max({a.z, b.z, c.z}));
+}
+
+// The back of a triangle that has a twin is the twin's front: which of the two the ray met first is rounding.
+void turn_to_twin(const TriangleSet::Twin& twin, Hit& hit) {
+    const std::array<float, 3> weights = {1 - hit.u - hit.v, hit.u, hit.v};
+    std::array<float, 3> of_twin{};
+    of_twin[twin.first] = weights[0];
+    of_twin[(twin.first + 2u) % 3] = weights[1];
+    of_twin[(twin.first + 1u) % 3] = weights[2];
+    hit.primitive = twin.primitive;
+    hit.triangle = twin.triangle;
+    hit.u = of_twin[1];
+    hit.v = of_twin[2];
+    hit.front = true;
 }
 
 RTCRay embree_ray(const Ray& ray) {
@@ -72,23 +99,55 @@ std::shared_ptr<const Scene> Scene::build(MapGeometry& geometry, const Region& r
     for (std::uint32_t n = 0; n < objects.size(); ++n) {
         const map::Object& object = objects[n];
         if (!overlaps(object.bounds, region, reach_m)) continue;
-        std::shared_ptr<const MeshBvh>& bvh = by_mesh[object.mesh];
-        if (!bvh) bvh = geometry.bvh_of(object.mesh);
-        RTCGeometry instance = rtcNewGeometry(scene->device_->handle(), RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(instance, bvh->handle());
-        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &object.world_from_object[0][0]);
-        rtcCommitGeometry(instance);
-        rtcAttachGeometryByID(scene->handle_, instance, static_cast<unsigned>(scene->instances_.size()));
-        rtcReleaseGeometry(instance);
-        scene->instances_.push_back({n, normal_transform(object.world_from_object)});
         scene->bounds_.extend(object.bounds.low);
         scene->bounds_.extend(object.bounds.high);
+        if (is_large(object.bounds)) {
+            scene->add_large(n, region, reach_m);
+            continue;
+        }
+        std::shared_ptr<const MeshBvh>& bvh = by_mesh[object.mesh];
+        if (!bvh) bvh = geometry.bvh_of(object.mesh);
+        scene->add_instance(n, *bvh);
     }
     rtcCommitScene(scene->handle_);
     for (auto& bvh : by_mesh) {
         if (bvh) scene->meshes_.push_back(std::move(bvh));
     }
     return scene;
+}
+
+void Scene::add_instance(std::uint32_t object, const MeshBvh& bvh) {
+    const glm::mat4x3& world_from_object = map_->objects[object].world_from_object;
+    RTCGeometry instance = rtcNewGeometry(device_->handle(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, bvh.handle());
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &world_from_object[0][0]);
+    rtcCommitGeometry(instance);
+    rtcAttachGeometryByID(handle_, instance, static_cast<unsigned>(instances_.size()));
+    rtcReleaseGeometry(instance);
+    instances_.push_back({object, &bvh, normal_transform(world_from_object)});
+}
+
+void Scene::add_large(std::uint32_t object, const Region& region, float reach_m) {
+    const map::Object& placed = map_->objects[object];
+    const glm::dmat4x3 world_from_object(placed.world_from_object);
+    const auto within_reach = [&](const map::Primitive& primitive, const glm::uvec3& triangle) {
+        map::Bounds bounds;
+        for (glm::length_t k = 0; k < 3; ++k) bounds.extend(glm::vec3(world_from_object * glm::dvec4(primitive.positions[triangle[k]], 1)));
+        return overlaps(bounds, region, reach_m);
+    };
+    const bool mirrored = mirrors(placed.world_from_object);
+    for (auto& set : triangle_sets(*map_, map_->meshes[placed.mesh], within_reach)) {
+        set->instance = static_cast<std::uint32_t>(instances_.size());
+        set->mirrored = mirrored;
+        attach(device_->handle(), handle_, *set, static_cast<std::uint32_t>(map_->objects.size() + large_sets_.size()), placed.world_from_object);
+        large_sets_.push_back(std::move(set));
+    }
+    instances_.push_back({object, nullptr, glm::mat3(mirrored ? -1.0f : 1.0f)});
+}
+
+const TriangleSet& Scene::set_of(std::uint32_t instance, std::uint32_t embree_geometry) const {
+    const MeshBvh* mesh = instances_[instance].mesh;
+    return mesh != nullptr ? mesh->set(embree_geometry) : *large_sets_[embree_geometry - map_->objects.size()];
 }
 
 Scene::~Scene() {
@@ -100,22 +159,32 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
     RTCRayHit r = embree_ray_hit(ray);
     rtcIntersect1(handle_, &query.base, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    const glm::vec3 object_normal(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
-    glm::vec3 normal = instances_[r.hit.instID[0]].world_from_normal * object_normal;
+    const std::uint32_t instance = query.best.instance;
+    const TriangleSet& set = set_of(instance, r.hit.geomID);
+    glm::vec3 normal = instances_[instance].world_from_normal * glm::vec3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
     // The front is counter-clockwise in object space; a cofactor transform keeps the sign of direction . normal.
     const bool front = glm::dot(normal, ray.direction) < 0;
     const float length = glm::length(normal);
     normal = length > 0 ? normal * ((front ? 1.0f : -1.0f) / length) : -ray.direction;
-    return Hit{query.best_distance, r.hit.instID[0], r.hit.geomID, r.hit.primID, r.hit.u, r.hit.v, front, normal};
+    Hit hit{query.best_distance, instance, set.primitive_index, set.triangle_of(r.hit.primID), r.hit.u, r.hit.v, front, normal, length};
+    if (!front && !set.twins.empty() && set.twins[r.hit.primID].present()) turn_to_twin(set.twins[r.hit.primID], hit);
+    return hit;
 }
 
-Surface Scene::surface(const Hit& hit) const {
+Surface Scene::surface(const Hit& hit, float footprint_m) const {
     const map::Object& object = object_of(hit);
-    const map::Primitive& primitive = map_->meshes[object.mesh].primitives[hit.primitive];
-    // Leaves reflect on both sides, whatever the exporter says.
-    const bool two_sided = object.role == map::Role::vegetation || map_->materials[primitive.material].double_sided;
-    if (!hit.front && !two_sided) return {true, glm::vec3(0)};
-    return {false, albedo_at(*map_, primitive, hit.triangle, hit.u, hit.v)};
+    return surface_at(*map_, map_->meshes[object.mesh].primitives[hit.primitive], object.role, hit.triangle, hit.u, hit.v, hit.front, hit.double_area_m2, footprint_m);
+}
+
+std::size_t Scene::crossings(const Ray& ray) const {
+    std::vector<Crossing> crossings;
+    Query query;
+    query.crossings = &crossings;
+    RTCRayHit r = embree_ray_hit(ray);
+    rtcIntersect1(handle_, &query.base, &r);
+    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.id < b.id; });
+    const auto same = [](const Crossing& a, const Crossing& b) { return a.id == b.id; };
+    return static_cast<std::size_t>(std::unique(crossings.begin(), crossings.end(), same) - crossings.begin());
 }
 
 bool Scene::occluded(const Ray& ray) const {
@@ -137,12 +206,13 @@ void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
     for (std::size_t n = 0; n < crossings.size(); ++n) {
         const Crossing& crossing = crossings[n];
         if (n > 0 && crossing.id == crossings[n - 1].id) continue;
-        const map::Object& object = map_->objects[instances_[crossing.id.instance].object];
+        const Instance& instance = instances_[crossing.id.instance];
+        const map::Object& object = map_->objects[instance.object];
         if (object.role == map::Role::vegetation) continue;
-        const map::Primitive& primitive = map_->meshes[object.mesh].primitives[crossing.id.primitive];
-        const std::optional<double> z_m = height_on_triangle(object, primitive, crossing.id.triangle, at);
+        const TriangleSet& set = set_of(crossing.id.instance, crossing.id.set);
+        const std::optional<double> z_m = height_on_triangle(object, *set.primitive, set.triangle_of(crossing.id.triangle), at);
         if (!z_m) continue;
-        const bool two_sided = map_->materials[primitive.material].double_sided;
+        const bool two_sided = set.material->double_sided || set.material->transmission > 0;
         hits.push_back({static_cast<float>(*z_m), crossing.facing < 0 || two_sided, crossing.facing > 0 || two_sided});
     }
     std::stable_sort(hits.begin(), hits.end(), [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });

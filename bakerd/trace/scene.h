@@ -4,6 +4,7 @@
 
 #include "bakerd/map/map.h"
 #include "bakerd/trace/geometry.h"
+#include "bakerd/trace/surface.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
@@ -32,12 +33,7 @@ struct Hit {
     float u = 0, v = 0;           // barycentric: weights of the second and third vertex
     bool front = false;           // the ray met the counter-clockwise side
     glm::vec3 normal{};           // unit, world, on the ray's side
-};
-
-// What a hit sends back.
-struct Surface {
-    bool absorbs = false;   // the back of a one-sided surface: neither sky nor bounce
-    glm::vec3 albedo{};     // linear Rec. 709
+    float double_area_m2 = 0;     // twice the triangle's area in the world
 };
 
 // One crossing of a vertical line with a static object.
@@ -60,10 +56,13 @@ class Scene {
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
-    // The closest hit. Masked texels let the ray through; ties go to the object of the smaller digest.
+    // The closest hit. What alpha takes away lets the ray through; ties go to the object of the smaller digest.
     [[nodiscard]] std::optional<Hit> closest(const Ray& ray) const;
-    [[nodiscard]] Surface surface(const Hit& hit) const;
+    // Textures are averaged over a width of `footprint_m`.
+    [[nodiscard]] Surface surface(const Hit& hit, float footprint_m) const;
     [[nodiscard]] bool occluded(const Ray& ray) const;
+    // How many surfaces the ray crosses, each at least once.
+    [[nodiscard]] std::size_t crossings(const Ray& ray) const;
 
     // All crossings of the vertical line at (x, y) with static objects, from the top down; `hits` is replaced.
     void column(glm::vec2 at, std::vector<ColumnHit>& hits) const;
@@ -73,7 +72,9 @@ class Scene {
 
     [[nodiscard]] const map::Bounds& bounds() const { return bounds_; }
     [[nodiscard]] std::size_t object_count() const { return instances_.size(); }
-    [[nodiscard]] const map::Object& object_of(const Hit& hit) const { return map_->objects[instances_[hit.instance].object]; }
+    [[nodiscard]] std::uint32_t object_index(std::uint32_t instance) const { return instances_[instance].object; }
+    [[nodiscard]] const map::Object& object_of(const Hit& hit) const { return map_->objects[object_index(hit.instance)]; }
+    [[nodiscard]] const map::Map& map() const { return *map_; }
 
     // Embree's scene, for benchmarks that measure what it alone costs.
     [[nodiscard]] RTCSceneTy* embree_scene() const { return handle_; }
@@ -81,14 +82,20 @@ class Scene {
   private:
     struct Instance {
         std::uint32_t object;
-        glm::mat3 world_from_normal;  // inverse transpose, not normalised
+        const MeshBvh* mesh;          // none of a large object
+        glm::mat3 world_from_normal;  // cofactors: keeps areas too
     };
     Scene() = default;
+    void add_instance(std::uint32_t object, const MeshBvh& bvh);
+    void add_large(std::uint32_t object, const Region& region, float reach_m);
+    [[nodiscard]] const TriangleSet& set_of(std::uint32_t instance, std::uint32_t embree_geometry) const;
 
     std::shared_ptr<const Device> device_;
     std::shared_ptr<const map::Map> map_;
     std::vector<std::shared_ptr<const MeshBvh>> meshes_;  // keeps the instanced BVHs alive
     std::vector<Instance> instances_;                     // in the order of the map's objects
+    // Of large objects, what lies within reach, in world space. Their geometry ids follow those of all instances.
+    std::vector<std::unique_ptr<TriangleSet>> large_sets_;
     map::Bounds bounds_;
     RTCSceneTy* handle_ = nullptr;
 };

@@ -1,14 +1,41 @@
-// What a triangle looks like at a point: alpha and albedo from factor, texture and vertex colour.
+// What a triangle looks like at a point: whether it is there, and what it does with light.
 #pragma once
 
 #include "bakerd/map/map.h"
 
+#include <cstdint>
+
 namespace drtv::trace {
+
+// What a hit does with light; Lambertian all of it. Nothing when `absorbs`.
+struct Surface {
+    bool absorbs = false;     // the back of a one-sided surface: neither sky nor bounce
+    glm::vec3 albedo{};       // linear Rec. 709, sent back
+    glm::vec3 transmitted{};  // let through to the other side; with albedo at most map::max_albedo a channel
+    glm::vec3 emission{};     // radiance of the side that was hit, nits
+};
+
+// Vegetation whose material is thin (double-sided, or cut out by alpha) and says nothing of transmission lets through
+// this share of what it sends back: leaves do about that much in visible light.
+inline constexpr float leaf_transmission = 0.5f;
 
 // Barycentric u, v weigh the triangle's second and third vertex.
 [[nodiscard]] float alpha_at(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
 
-// Linear, each channel in [0, map::max_albedo].
-[[nodiscard]] glm::vec3 albedo_at(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
+// Whether the surface is there: opaque ones are, masked ones by their cutoff, blended ones with the probability of
+// their alpha, by a hash of the point: at another point the coin falls anew, at the same one never.
+[[nodiscard]] bool is_there(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
+
+enum class Presence : std::uint8_t { nowhere, mixed, whole };
+
+// Where on the triangle `is_there` holds; mixed when in doubt.
+[[nodiscard]] Presence presence_of(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle);
+
+// `double_area_m2` is twice the triangle's area in the world, `footprint_m` the width over which textures are averaged.
+[[nodiscard]] Surface surface_at(const map::Map& map, const map::Primitive& primitive, map::Role role, std::uint32_t triangle, float u, float v, bool front, float double_area_m2,
+                                 float footprint_m);
+
+// Radiance of the triangle's front at a point, nits; as surface_at has it.
+[[nodiscard]] glm::vec3 emission_at(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v, float double_area_m2, float footprint_m);
 
 }  // namespace drtv::trace

@@ -8,7 +8,9 @@ namespace drtv::layout {
 
 inline constexpr std::uint32_t magic = 0x56545244;  // "DRTV"
 inline constexpr std::uint16_t major_version = 1;
-inline constexpr std::uint16_t minor_version = 0;
+// Of a file with the sections 7 to 9, or some of them; a file without is one of version 1.0, byte for byte. In a file of
+// version 1.0 the kinds 7 to 9 are unused: what they hold there is anything.
+inline constexpr std::uint16_t minor_with_light_sections = 1;
 
 inline constexpr std::size_t header_bytes = 64;
 inline constexpr std::size_t entry_bytes = 32;
@@ -33,6 +35,35 @@ inline constexpr std::size_t grid_header_bytes = 16;
 inline constexpr std::size_t grid_bytes = grid_header_bytes + 4096;
 inline constexpr std::size_t statistics_bytes = 40;
 
+[[nodiscard]] constexpr std::size_t align(std::size_t offset) { return (offset + alignment - 1) / alignment * alignment; }
+
+inline constexpr std::size_t light_codes_bytes = 24;  // i16 [3][4]
+inline constexpr std::size_t static_irradiance_bytes = light_codes_bytes + 1;  // a probe; all codes, then all exponents
+inline constexpr std::size_t convergence_bytes = 48;
+
+// Local transfer: header, sources, receivers, masks, codes; each part starts at a multiple of 16.
+struct LocalTransferLayout {
+    static constexpr std::size_t source_count = 0, mask_size = 2, pair_count = 4, reserved = 8, header_bytes = 16;
+    static constexpr std::size_t source_bytes = 4, receiver_bytes = 8;
+
+    // A row of the matrix receiver x source, a bit a source.
+    [[nodiscard]] static constexpr std::size_t mask_bytes(std::size_t sources) { return sources <= 128 ? 16 : 32; }
+
+    std::size_t sources_end, receivers, receivers_end, masks, codes, end;
+
+    constexpr LocalTransferLayout(std::size_t probe_count, std::size_t sources, std::size_t pairs)
+        : sources_end(header_bytes + sources * source_bytes),
+          receivers(align(sources_end)),
+          receivers_end(receivers + probe_count * receiver_bytes),
+          masks(align(receivers_end)),
+          codes(masks + probe_count * mask_bytes(sources)),
+          end(codes + pairs * light_codes_bytes) {}
+
+    [[nodiscard]] static constexpr std::size_t source_at(std::size_t s) { return header_bytes + s * source_bytes; }
+    [[nodiscard]] constexpr std::size_t receiver_at(std::size_t p) const { return receivers + p * receiver_bytes; }
+    [[nodiscard]] constexpr std::size_t pair_at(std::size_t n) const { return codes + n * light_codes_bytes; }
+};
+
 // Where the values of a section lie in the file. Inside a compressed section no byte stands for one value: the
 // section's first byte has to do.
 struct Place {
@@ -41,7 +72,5 @@ struct Place {
 
     [[nodiscard]] constexpr std::uint64_t at(std::uint64_t n) const { return raw ? start + n : start; }
 };
-
-[[nodiscard]] constexpr std::size_t align(std::size_t offset) { return (offset + alignment - 1) / alignment * alignment; }
 
 }  // namespace drtv::layout

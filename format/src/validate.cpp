@@ -3,7 +3,10 @@
 #include <drtv/read.h>
 #include <drtv/sector.h>
 
+#include "decode_section.h"
+#include "findings.h"
 #include "layout.h"
+#include "validate_light.h"
 
 #include <array>
 #include <cassert>
@@ -12,24 +15,10 @@
 namespace drtv {
 namespace {
 
-enum IssueIndex : std::size_t {
-    unreadable,
-    checksum,
-    unsupported_version,
-    reserved_code,
-    sky_visibility_range,
-    sky_visibility_down,
-    transfer_range,
-    grid_reference,
-    grid_no_probe,
-    settings_range,
-    duplicate_position,
-};
-
-constexpr std::array<Issue, 11> issues = {{
+constexpr std::array<Issue, issue_count> issues = {{
     {"STRUCTURE", Severity::error, "header, table or a section breaks a structural rule"},
     {"CHECKSUM", Severity::error, "a stored checksum does not match the bytes it covers"},
-    {"UNSUPPORTED_VERSION", Severity::error, "the file, or a section that this version knows, is of another version"},
+    {"UNSUPPORTED_VERSION", Severity::error, "the file, or a section that it must have, is of another version"},
     {"FIXED_POINT_RESERVED", Severity::error, "a coefficient has the reserved code -32768"},
     {"SKY_VISIBILITY_RANGE", Severity::error, "a sky visibility lies outside [0, 1]"},
     {"SKY_VISIBILITY_DOWN", Severity::error, "the sky visibility of the downward direction is not 0"},
@@ -38,36 +27,24 @@ constexpr std::array<Issue, 11> issues = {{
     {"GRID_NO_PROBE", Severity::error, "a grid cell is empty although the sector has probes"},
     {"SETTINGS_RANGE", Severity::error, "a recorded setting lies outside its range"},
     {"DUPLICATE_POSITION", Severity::error, "two probes stand at the same position"},
+    {"STATIC_IRRADIANCE_RANGE", Severity::error, "a static irradiance is negative"},
+    {"STATIC_EXPONENT", Severity::error, "the exponent of a static irradiance lies outside -64 to 64"},
+    {"LOCAL_SOURCE_COUNT", Severity::error, "a probe takes light from more than 128 local sources"},
+    {"LOCAL_SOURCE_DUPLICATE", Severity::error, "two local sources are the same probe"},
+    {"LOCAL_EXPONENT", Severity::error, "the exponents of a pair's receiver and source add up to less than -126 or more than 63"},
+    {"LOCAL_TRANSFER_RANGE", Severity::error, "a local transfer coefficient is larger than light that is nowhere negative allows"},
+    {"CONVERGENCE_RANGE", Severity::error, "a recorded error or number of paths is negative or out of order"},
 }};
 
-class Findings {
-  public:
-    explicit Findings(std::size_t max) : max_(max) {}
-
-    void add(std::size_t issue, std::uint64_t offset, std::string path, std::string message) {
-        if (found_.size() < max_) found_.push_back({&issues[issue], offset, std::move(path), std::move(message)});
-    }
-    [[nodiscard]] std::vector<Finding> take() { return std::move(found_); }
-
-  private:
-    std::size_t max_;
-    std::vector<Finding> found_;
-};
-
-layout::Place place_of(const std::vector<SectionEntry>& entries, SectionKind kind) {
-    for (const SectionEntry& entry : entries) {
-        if (entry.kind == static_cast<std::uint16_t>(kind)) return {entry.offset, entry.codec == static_cast<std::uint8_t>(Codec::raw)};
-    }
-    return {};
+layout::Place place_of(std::span<const SectionEntry> entries, SectionKind kind) {
+    const SectionEntry* entry = find_section(entries, kind);
+    return entry == nullptr ? layout::Place{} : layout::Place{entry->offset, entry->codec == static_cast<std::uint8_t>(Codec::raw)};
 }
 
-std::size_t issue_of(ReadError error) {
+IssueIndex issue_of(ReadError error) {
     if (error == ReadError::checksum_mismatch) return checksum;
     return error == ReadError::unsupported_version ? unsupported_version : unreadable;
 }
-
-std::string probe_path(std::size_t p) { return "probe[" + std::to_string(p) + "]"; }
-std::string index(std::size_t n) { return "[" + std::to_string(n) + "]"; }
 
 void check_sky_visibility(const Sector& sector, const layout::Place& place, Findings& findings) {
     for (std::size_t p = 0; p < sector.probes.size(); ++p) {
@@ -84,7 +61,6 @@ void check_sky_visibility(const Sector& sector, const layout::Place& place, Find
 }
 
 void check_transfer(const Sector& sector, const layout::Place& place, Findings& findings) {
-    static constexpr std::array<char, channel_count> channel_name = {'r', 'g', 'b'};
     for (std::size_t p = 0; p < sector.probes.size(); ++p) {
         std::uint64_t at = p * layout::transfer_bytes;
         for (std::size_t c = 0; c < channel_count; ++c) {
@@ -156,6 +132,9 @@ std::vector<Finding> validate_sector(std::span<const std::uint8_t> bytes, std::s
     check_sky_visibility(sector, place_of(entries, SectionKind::sky_visibility), findings);
     check_transfer(sector, place_of(entries, SectionKind::transfer), findings);
     check_grid(sector, place_of(entries, SectionKind::grid), findings);
+    check_static_irradiance(sector, place_of(entries, SectionKind::static_irradiance), findings);
+    check_local_transfer(sector, place_of(entries, SectionKind::local_transfer), findings);
+    check_convergence(sector, place_of(entries, SectionKind::convergence), findings);
     return findings.take();
 }
 

@@ -39,21 +39,13 @@ Bytes positions_section(const std::vector<Probe>& probes) {
 
 Bytes sky_visibility_section(const std::vector<Probe>& probes) {
     Bytes bytes;
-    for (const Probe& probe : probes) {
-        for (std::int16_t q : probe.sky_visibility) append_le(bytes, static_cast<std::uint16_t>(q));
-    }
+    for (const Probe& probe : probes) append_codes(bytes, probe.sky_visibility);
     return bytes;
 }
 
 Bytes transfer_section(const std::vector<Probe>& probes) {
     Bytes bytes;
-    for (const Probe& probe : probes) {
-        for (const auto& channel : probe.transfer) {
-            for (const auto& row : channel) {
-                for (std::int16_t q : row) append_le(bytes, static_cast<std::uint16_t>(q));
-            }
-        }
-    }
+    for (const Probe& probe : probes) append_codes(bytes, probe.transfer);
     return bytes;
 }
 
@@ -72,6 +64,51 @@ Bytes statistics_section(const Statistics& s) {
     append_f32(bytes, s.used_distance_m);
     append_le(bytes, s.rays);
     append_le(bytes, s.back_hits);
+    return bytes;
+}
+
+Bytes static_irradiance_section(const std::vector<StaticIrradiance>& probes) {
+    Bytes bytes;
+    for (const StaticIrradiance& probe : probes) append_codes(bytes, probe.codes);
+    for (const StaticIrradiance& probe : probes) bytes.push_back(static_cast<std::uint8_t>(probe.exponent));
+    return bytes;
+}
+
+Bytes local_transfer_section(const LocalTransfer& local) {
+    const std::size_t mask_bytes = layout::LocalTransferLayout::mask_bytes(local.sources.size());
+    const layout::LocalTransferLayout parts(local.receivers.size(), local.sources.size(), local.pairs.size());
+    Bytes bytes;
+    bytes.reserve(parts.end);
+    append_le(bytes, static_cast<std::uint16_t>(local.sources.size()));
+    append_le(bytes, static_cast<std::uint16_t>(mask_bytes));
+    append_le(bytes, static_cast<std::uint32_t>(local.pairs.size()));
+    append_le(bytes, std::uint64_t{0});
+    for (const LocalSource& source : local.sources) {
+        append_le(bytes, source.di);
+        append_le(bytes, source.dj);
+        append_le(bytes, source.probe);
+        append_le(bytes, source.exponent);
+    }
+    bytes.resize(parts.receivers, 0);
+    for (const LocalReceiver& receiver : local.receivers) {
+        append_le(bytes, receiver.first_pair);
+        append_le(bytes, receiver.exponent);
+        bytes.insert(bytes.end(), 3, std::uint8_t{0});
+    }
+    bytes.resize(parts.masks, 0);
+    for (const LocalReceiver& receiver : local.receivers) {
+        bytes.insert(bytes.end(), receiver.sources.begin(), receiver.sources.begin() + static_cast<std::ptrdiff_t>(mask_bytes));
+    }
+    for (const LightCodes& pair : local.pairs) append_codes(bytes, pair);
+    return bytes;
+}
+
+Bytes convergence_section(const Convergence& c) {
+    Bytes bytes;
+    for (float error : {c.error_asked, c.error_median, c.error_p95, c.error_max}) append_f32(bytes, error);
+    for (std::uint32_t n : {c.paths_least, c.paths_most, c.local_bounces, c.local_rays}) append_le(bytes, n);
+    append_le(bytes, c.static_rays);
+    append_le(bytes, c.local_transfer_rays);
     return bytes;
 }
 
@@ -119,13 +156,20 @@ std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions&
     assert(sector.probes.size() <= max_probes && sector.z_shift <= max_z_shift);
     assert(std::abs(std::int64_t{sector.i}) <= max_sector_coordinate && std::abs(std::int64_t{sector.j}) <= max_sector_coordinate);
     assert(std::abs(std::int64_t{sector.z_origin_units}) <= max_z_origin_units);
+    assert(sector.static_irradiance.empty() || sector.static_irradiance.size() == sector.probes.size());
+    assert(!sector.local_transfer || (sector.local_transfer->receivers.size() == sector.probes.size() && sector.local_transfer->sources.size() <= max_probes));
     std::vector<StoredSection> sections;
-    sections.push_back(store_section(SectionKind::bake, bake_section(sector.bake), options.codec));
-    sections.push_back(store_section(SectionKind::positions, positions_section(sector.probes), options.codec));
-    sections.push_back(store_section(SectionKind::sky_visibility, sky_visibility_section(sector.probes), options.codec));
-    sections.push_back(store_section(SectionKind::transfer, transfer_section(sector.probes), options.codec));
-    sections.push_back(store_section(SectionKind::grid, grid_section(sector.grid), options.codec));
-    sections.push_back(store_section(SectionKind::statistics, statistics_section(sector.statistics), options.codec));
+    const auto add = [&](SectionKind kind, Bytes raw) { sections.push_back(store_section(kind, std::move(raw), options.codec)); };
+    add(SectionKind::bake, bake_section(sector.bake));
+    add(SectionKind::positions, positions_section(sector.probes));
+    add(SectionKind::sky_visibility, sky_visibility_section(sector.probes));
+    add(SectionKind::transfer, transfer_section(sector.probes));
+    add(SectionKind::grid, grid_section(sector.grid));
+    add(SectionKind::statistics, statistics_section(sector.statistics));
+    const std::size_t required = sections.size();
+    if (!sector.static_irradiance.empty()) add(SectionKind::static_irradiance, static_irradiance_section(sector.static_irradiance));
+    if (sector.local_transfer) add(SectionKind::local_transfer, local_transfer_section(*sector.local_transfer));
+    if (sector.convergence) add(SectionKind::convergence, convergence_section(*sector.convergence));
 
     std::size_t end = layout::header_bytes + sections.size() * layout::entry_bytes;
     for (StoredSection& section : sections) {
@@ -140,7 +184,7 @@ std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions&
     file.reserve(end);
     append_le(file, layout::magic);
     append_le(file, layout::major_version);
-    append_le(file, layout::minor_version);
+    append_le(file, sections.size() > required ? layout::minor_with_light_sections : std::uint16_t{0});
     append_le(file, static_cast<std::uint32_t>(end));
     append_le(file, static_cast<std::uint32_t>(sections.size()));
     append_le(file, static_cast<std::uint32_t>(sector.i));

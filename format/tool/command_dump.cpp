@@ -23,26 +23,46 @@ std::string hex(const std::array<std::uint8_t, 32>& bytes) {
     return text;
 }
 
-void append_probe(JsonWriter& json, const Sector& sector, const Probe& probe) {
+void append_codes(JsonWriter& json, std::int16_t code, float scale) { json.value(decode_fixed(code, scale)); }
+
+template <class Element, std::size_t count>
+void append_codes(JsonWriter& json, const std::array<Element, count>& codes, float scale) {
+    json.begin_array();
+    for (const Element& element : codes) append_codes(json, element, scale);
+    json.end_array();
+}
+
+void append_local(JsonWriter& json, const Sector& sector, const LocalReceiver& receiver) {
+    const LocalTransfer& local = *sector.local_transfer;
+    json.key("local").begin_array();
+    std::size_t pair = receiver.first_pair;
+    for (std::size_t s = 0; s < local.sources.size(); ++s) {
+        if (!has_pair(receiver, s)) continue;
+        const LocalSource& source = local.sources[s];
+        json.begin_object().key("sector").begin_array().value(sector.i + source.di).value(sector.j + source.dj).end_array();
+        json.key("probe").value(unsigned{source.probe}).key("coefficients");
+        append_codes(json, local.pairs[pair++], scale_of_exponent(receiver.exponent + source.exponent));
+        json.end_object();
+    }
+    json.end_array();
+}
+
+void append_probe(JsonWriter& json, const Sector& sector, std::size_t p) {
+    const Probe& probe = sector.probes[p];
     json.begin_object();
     json.key("position").begin_array();
     for (std::int32_t units : position_units(sector, probe)) json.value(metres(units));
     json.end_array();
     json.key("kind").value(name_of(probe.kind));
-    json.key("transfer").begin_array();
-    for (const auto& channel : probe.transfer) {
-        json.begin_array();
-        for (const auto& row : channel) {
-            json.begin_array();
-            for (std::int16_t q : row) json.value(decode_fixed(q, transfer_scale));
-            json.end_array();
-        }
-        json.end_array();
+    json.key("transfer");
+    append_codes(json, probe.transfer, transfer_scale);
+    json.key("sky_visibility");
+    append_codes(json, probe.sky_visibility, sky_visibility_scale);
+    if (!sector.static_irradiance.empty()) {
+        json.key("static_irradiance");
+        append_codes(json, sector.static_irradiance[p].codes, scale_of_exponent(sector.static_irradiance[p].exponent));
     }
-    json.end_array();
-    json.key("sky_visibility").begin_array();
-    for (std::int16_t q : probe.sky_visibility) json.value(decode_fixed(q, sky_visibility_scale));
-    json.end_array();
+    if (sector.local_transfer) append_local(json, sector, sector.local_transfer->receivers[p]);
     json.end_object();
 }
 
@@ -70,6 +90,15 @@ void append_statistics(JsonWriter& json, const Statistics& s) {
     json.key("dropped_in_solid").value(s.dropped_in_solid).key("removed_by_volume").value(s.removed_by_volume);
     json.key("thinned").value(s.thinned).key("used_distance").value(s.used_distance_m);
     json.key("rays").value(s.rays).key("back_hits").value(s.back_hits).end_object();
+}
+
+void append_convergence(JsonWriter& json, const Convergence& c) {
+    json.key("convergence").begin_object();
+    json.key("error_asked").value(c.error_asked).key("error_median").value(c.error_median);
+    json.key("error_p95").value(c.error_p95).key("error_max").value(c.error_max);
+    json.key("paths_least").value(c.paths_least).key("paths_most").value(c.paths_most);
+    json.key("local_bounces").value(c.local_bounces).key("local_rays").value(c.local_rays);
+    json.key("static_rays").value(c.static_rays).key("local_transfer_rays").value(c.local_transfer_rays).end_object();
 }
 
 }  // namespace
@@ -102,10 +131,11 @@ int run_dump(Arguments arguments) {
     json.key("sector").begin_array().value(sector.i).value(sector.j).end_array();
     append_settings(json, sector.bake);
     json.key("probes").begin_array();
-    for (const Probe& probe : sector.probes) append_probe(json, sector, probe);
+    for (std::size_t p = 0; p < sector.probes.size(); ++p) append_probe(json, sector, p);
     json.end_array();
     append_grid(json, sector);
     append_statistics(json, sector.statistics);
+    if (sector.convergence) append_convergence(json, *sector.convergence);
     json.end_object();
     std::puts(json.text().c_str());
     return exit_valid;

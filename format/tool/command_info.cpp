@@ -12,7 +12,7 @@ namespace {
 void print_sections(const std::vector<SectionEntry>& entries) {
     std::printf("sections\n");
     for (const SectionEntry& entry : entries) {
-        std::printf("  %-15s %6u bytes%s\n", std::string(name_of_section(entry.kind)).c_str(), entry.raw_bytes,
+        std::printf("  %-17s %6u bytes%s\n", std::string(name_of_section(entry.kind)).c_str(), entry.raw_bytes,
                     entry.codec == 0 ? "" : (", zstd " + std::to_string(entry.stored_bytes)).c_str());
     }
 }
@@ -35,6 +35,29 @@ void print_probes(const Sector& sector) {
     if (sector.probes.empty()) return;
     std::printf("heights         %.2f to %.2f m\n", static_cast<double>(low[2]), static_cast<double>(high[2]));
     std::printf("sky visibility  %.3f on average\n", visibility / (3.0 * static_cast<double>(sector.probes.size())));
+}
+
+// One line for each optional section that the file has.
+void print_light(const Sector& sector) {
+    if (!sector.static_irradiance.empty()) {
+        float most = 0;
+        for (const StaticIrradiance& probe : sector.static_irradiance) {
+            const float scale = scale_of_exponent(probe.exponent);
+            for (const auto& channel : probe.codes) most = std::max(most, decode_fixed(*std::max_element(channel.begin(), channel.end()), scale));
+        }
+        std::printf("static light    up to %g (E/pi)\n", static_cast<double>(most));
+    }
+    if (sector.local_transfer) {
+        const LocalTransfer& local = *sector.local_transfer;
+        const auto is_own = [](const LocalSource& source) { return source.di == 0 && source.dj == 0; };
+        const auto own = std::count_if(local.sources.begin(), local.sources.end(), is_own);
+        std::printf("local lights    %zu pairs of probe and source, %zu sources, of which %zu in neighbours\n", local.pairs.size(),
+                    local.sources.size(), local.sources.size() - static_cast<std::size_t>(own));
+    }
+    if (const auto& c = sector.convergence) {
+        std::printf("convergence     error %g asked, %g median, %g at 95 %%, %g at most; %u to %u paths a probe\n", static_cast<double>(c->error_asked),
+                    static_cast<double>(c->error_median), static_cast<double>(c->error_p95), static_cast<double>(c->error_max), c->paths_least, c->paths_most);
+    }
 }
 
 }  // namespace
@@ -73,6 +96,7 @@ int run_info(Arguments arguments) {
     std::printf("spacing used    %g m\n", static_cast<double>(s.used_distance_m));
     std::printf("rays            %llu, of which %llu met the back of a one-sided surface\n",
                 static_cast<unsigned long long>(s.rays), static_cast<unsigned long long>(s.back_hits));
+    print_light(sector);
     print_sections(entries);
     return exit_valid;
 }

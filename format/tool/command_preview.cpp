@@ -4,11 +4,18 @@
 
 #include <drtv/read.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
+#include <string_view>
+#include <utility>
 
 namespace drtv::tool {
 namespace {
+
+constexpr std::array<std::pair<std::string_view, DotQuantity>, 4> quantities = {
+    {{"relit", DotQuantity::relit}, {"sky", DotQuantity::sky}, {"errors", DotQuantity::errors}, {"back_hits", DotQuantity::back_hits}}};
 
 struct PreviewArguments {
     std::string folder, out;
@@ -35,11 +42,12 @@ bool parse(Arguments arguments, PreviewArguments& parsed) {
             }
         } else if (argument == "--quantity") {
             const std::string& text = arguments[++n];
-            if (text != "relit" && text != "sky") {
-                complain("preview: --quantity takes relit or sky, not \"" + text + "\"");
+            const auto quantity = std::find_if(quantities.begin(), quantities.end(), [&](const auto& q) { return q.first == text; });
+            if (quantity == quantities.end()) {
+                complain("preview: --quantity takes relit, sky, errors or back_hits, not \"" + text + "\"");
                 return false;
             }
-            parsed.picture.dots = text == "sky" ? DotQuantity::sky : DotQuantity::relit;
+            parsed.picture.dots = quantity->second;
         } else if (argument.starts_with("-")) {
             complain("preview: unknown option \"" + argument + "\"");
             return false;

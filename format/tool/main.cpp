@@ -18,7 +18,7 @@ constexpr const char* usage =
     "  info FILE                       what a sector file holds\n"
     "  dump FILE --json                every number of a sector file as JSON\n"
     "  preview DIR --out FILE.png      picture of a region from above\n"
-    "          [--metres-per-pixel M] [--quantity relit|sky]\n"
+    "          [--metres-per-pixel M] [--quantity relit|sky|errors|back_hits]\n"
     "  --version                       version of tool and format\n"
     "\n"
     "exit status: 0 valid, 1 wrong usage, 2 a file cannot be read or written, 3 a file is invalid\n";
@@ -43,7 +43,7 @@ int run(const std::vector<std::string>& arguments) {
         return exit_valid;
     }
     if (command == "--version") {
-        std::puts("drtv 0.1.0, sector format 1.0");
+        std::puts("drtv 0.1.0, sector format 1.1");
         return exit_valid;
     }
     complain("unknown command \"" + command + "\"; drtv --help lists them");

@@ -1,7 +1,5 @@
 #include "region_picture.h"
 
-#include <drtv/relight.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +9,6 @@ namespace {
 constexpr double spacing_m = 8;          // typical distance between probes, the width of a bucket
 constexpr double background_reach_m = 12;  // a pixel farther than this from every probe stays empty
 constexpr double dot_radius_m = 2.1;
-constexpr float exposure = 1.5f;         // of relit colours, so that an open slope at noon is bright but not white
 constexpr Float3 empty_colour = {0.012f, 0.014f, 0.02f};
 
 struct Dot {
@@ -79,36 +76,15 @@ class Buckets {
     std::vector<std::vector<const Dot*>> buckets_;
 };
 
-// Clear sky at noon and a high sun, in units in which the sky's radiance is about one third.
-DistantLight noon_sky() { return constant_sky({0.24f, 0.32f, 0.46f}); }
-DistantLight noon_sun() {
-    constexpr Float3 to_sun = {0.40f, -0.30f, 0.866f};
-    return directional_sun({3.6f, 3.4f, 3.0f}, to_sun);
-}
-
-// Ambient on a sphere: the mean over normals up and around and down, so that the bounce shows too.
-Float3 ambient_of(const Probe& probe) {
-    static const DistantLight sky = noon_sky(), sun = noon_sun();
-    const BasisColours colours = relight(probe, sky, sun);
-    Float3 sum{};
-    constexpr std::array<Float3, 6> normals = {{{0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, -1}}};
-    for (const Float3& normal : normals) {
-        const Float3 ambient = shade_ambient(colours, normal);
-        for (std::size_t c = 0; c < 3; ++c) sum[c] += ambient[c] / static_cast<float>(normals.size());
-    }
-    return sum;
-}
-
 std::vector<Dot> gather_dots(const std::vector<Sector>& sectors, DotQuantity quantity) {
     std::vector<Dot> dots;
     for (const Sector& sector : sectors) {
-        for (const Probe& probe : sector.probes) {
+        for (std::size_t n = 0; n < sector.probes.size(); ++n) {
+            const Probe& probe = sector.probes[n];
             const Float3 p = position_m(sector, probe);
             Dot dot{p[0], p[1], p[2], 0, probe.kind, {}};
             for (std::size_t b = 0; b < 3; ++b) dot.sky_visibility += decode_fixed(probe.sky_visibility[b], sky_visibility_scale) / 3;
-            dot.colour = ambient_of(probe);
-            for (float& channel : dot.colour) channel *= exposure;
-            if (quantity == DotQuantity::sky) dot.colour = {dot.sky_visibility, dot.sky_visibility, dot.sky_visibility};
+            dot.colour = dot_colour(sector, n, dot.sky_visibility, quantity);
             dots.push_back(dot);
         }
     }

@@ -1,6 +1,7 @@
 // A region of sectors from above: probes as dots over a shaded map of sky visibility.
 #pragma once
 
+#include "dot_colour.h"
 #include "png_writer.h"
 
 #include <drtv/sector.h>
@@ -9,8 +10,6 @@
 #include <vector>
 
 namespace drtv::tool {
-
-enum class DotQuantity { relit, sky };
 
 struct PictureOptions {
     double metres_per_pixel = 0;  // 0: so that the longer side has about 1,600 pixels

@@ -7,7 +7,9 @@ namespace {
 
 TEST(Settings, PresetsAreThoseOfTheDesign) {
     EXPECT_EQ(preset("console")->rays, 2048u);
-    EXPECT_EQ(preset("pc")->rays, 2048u);
+    EXPECT_EQ(preset("pc")->rays, 4096u);
+    EXPECT_FALSE(preset("console")->local_transfer);
+    EXPECT_TRUE(preset("pc")->local_transfer);
     EXPECT_EQ(preset("draft")->rays, 256u);
     EXPECT_EQ(preset("draft")->bounces, 3u);
     EXPECT_NE(preset("ultra").error().find("'ultra'"), std::string::npos);
@@ -17,7 +19,7 @@ TEST(Settings, ValuesOutOfRangeAreRefusedAndChangeNothing) {
     Settings settings;
     const Settings before = settings;
     for (const auto& [key, value] : {std::pair("rays", "15"), std::pair("rays", "65537"), std::pair("rays", "-1"), std::pair("rays", "1e3"), std::pair("bounces", "9"), std::pair("reach", "0.5"), std::pair("reach", "nan"),
-                                     std::pair("reach", "inf"), std::pair("min_distance", "16.5"), std::pair("min_distance", ""), std::pair("lprt", "1"), std::pair("reach", "12m")}) {
+                                     std::pair("reach", "inf"), std::pair("min_distance", "16.5"), std::pair("min_distance", ""), std::pair("lprt", "2"), std::pair("lprt_bounces", "5"), std::pair("error", "-0.1"), std::pair("reach", "12m")}) {
         const auto result = set(settings, key, value);
         ASSERT_FALSE(result) << key << "=" << value;
         EXPECT_NE(result.error().find(key), std::string::npos);
@@ -27,7 +29,7 @@ TEST(Settings, ValuesOutOfRangeAreRefusedAndChangeNothing) {
 
 TEST(Settings, KeyChangesWithEachSetting) {
     const Settings base;
-    for (const auto& [key, value] : {std::pair("rays", "1024"), std::pair("bounces", "2"), std::pair("reach", "100.5"), std::pair("min_distance", "7")}) {
+    for (const auto& [key, value] : {std::pair("rays", "1024"), std::pair("bounces", "2"), std::pair("reach", "100.5"), std::pair("min_distance", "7"), std::pair("error", "0.01"), std::pair("lprt", "1")}) {
         Settings other;
         ASSERT_TRUE(set(other, key, value));
         EXPECT_NE(settings_key(other), settings_key(base)) << key;

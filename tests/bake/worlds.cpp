@@ -15,11 +15,11 @@ std::shared_ptr<bake::World> open_world(const GltfBuilder& builder) {
     return *world;
 }
 
-bake::ProbeLight light_at(bake::World& world, const glm::vec3& position_m, std::uint32_t rays, std::uint32_t bounces) {
+bake::ProbeLight light_at(bake::World& world, const glm::vec3& position_m, std::uint32_t rays, std::uint32_t bounces, float error) {
     const trace::FloatMode float_mode;
     const auto scene = world.scene_for({static_cast<std::int32_t>(std::floor(position_m.x / 64)), static_cast<std::int32_t>(std::floor(position_m.y / 64))}, 512);
-    const bake::SampleTable samples(rays, 2 + 2 * bounces);
-    return bake::integrate_probe(*scene, glm::ivec3(glm::round(position_m * 1024.0f)), samples, {bounces, 512});
+    const bake::SampleTable samples(rays, bake::sample_dimensions(bounces, !world.lights().empty()));
+    return bake::integrate_probe(*scene, world.lights(), glm::ivec3(glm::round(position_m * 1024.0f)), samples, {bounces, 512, error});
 }
 
 double under_constant_sky(const bake::ProbeLight& light, std::size_t channel, std::size_t basis) {

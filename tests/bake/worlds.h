@@ -13,7 +13,7 @@ namespace drtv::test {
 [[nodiscard]] std::shared_ptr<bake::World> open_world(const GltfBuilder& builder);
 
 // Light at a world position in metres; rays and bounces as given, reach 512 m.
-[[nodiscard]] bake::ProbeLight light_at(bake::World& world, const glm::vec3& position_m, std::uint32_t rays, std::uint32_t bounces = 3);
+[[nodiscard]] bake::ProbeLight light_at(bake::World& world, const glm::vec3& position_m, std::uint32_t rays, std::uint32_t bounces = 3, float error = 0);
 
 // Sum over i of T[c][b][i] and a constant sky of radiance 1.
 [[nodiscard]] double under_constant_sky(const bake::ProbeLight& light, std::size_t channel, std::size_t basis);

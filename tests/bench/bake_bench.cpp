@@ -25,7 +25,8 @@ struct Setup {
     std::shared_ptr<const trace::Scene> scene;
     std::vector<glm::ivec3> probes;
     std::unique_ptr<bake::SampleTable> samples;
-    std::vector<trace::Ray> rays;
+    bake::RayLog rays;
+    [[nodiscard]] std::size_t ray_count() const { return rays.paths.size() + rays.shadows.size(); }
     std::unique_ptr<RawEmbree> embree;
     bake::Settings settings;
 };
@@ -34,10 +35,13 @@ std::optional<Setup> setup;
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-std::uint64_t integrate_all(std::vector<trace::Ray>* shot = nullptr) {
+std::uint64_t integrate_all(bake::RayLog* log = nullptr) {
     const trace::FloatMode float_mode;
     std::uint64_t rays = 0;
-    for (const glm::ivec3& probe : setup->probes) rays += bake::integrate_probe(*setup->scene, probe, *setup->samples, {setup->settings.bounces, setup->settings.reach_m}, shot).rays;
+    for (const glm::ivec3& probe : setup->probes) {
+        const bake::ProbeLight light = bake::integrate_probe(*setup->scene, setup->world->lights(), probe, *setup->samples, {setup->settings.bounces, setup->settings.reach_m, 0}, log);
+        rays += light.rays + light.shadow_rays;
+    }
     return rays;
 }
 
@@ -50,18 +54,18 @@ bool prepare(const std::string& path) {
         return false;
     }
     setup.emplace();
-    setup->sectors = map::sectors_with_ground(*map).value();
     setup->world = bake::World::open(trace::Device::open().value(), std::make_shared<map::Map>(std::move(*map))).value();
+    setup->sectors = setup->world->sectors_with_ground();
     const map::SectorCoordinate middle = setup->sectors[setup->sectors.size() / 2];
     bake::Settings few = setup->settings;
     few.rays = 16;
-    const Sector sector = bake::bake_sector(*setup->world, middle, few).value();
+    const Sector sector = bake::bake_sector(*setup->world, middle, few).value().sector;
     for (std::size_t p = 0; p < sector.probes.size() && p < max_probes; ++p) {
         const auto units = position_units(sector, sector.probes[p]);
         setup->probes.emplace_back(units[0], units[1], units[2]);
     }
     setup->scene = setup->world->scene_for(middle, setup->settings.reach_m);
-    setup->samples = std::make_unique<bake::SampleTable>(setup->settings.rays, 2 + 2 * setup->settings.bounces);
+    setup->samples = std::make_unique<bake::SampleTable>(setup->settings.rays, bake::sample_dimensions(setup->settings.bounces, !setup->world->lights().empty()));
     static_cast<void>(integrate_all(&setup->rays));
     setup->embree = std::make_unique<RawEmbree>(setup->world->map());
     return true;
@@ -77,8 +81,8 @@ BENCHMARK(integrate_probes)->Unit(benchmark::kMillisecond);
 
 void embree_alone(benchmark::State& state) {
     const trace::FloatMode float_mode;
-    for (auto _ : state) benchmark::DoNotOptimize(setup->embree->intersect(setup->rays));
-    state.counters["rays/s"] = benchmark::Counter(static_cast<double>(setup->rays.size()) * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+    for (auto _ : state) benchmark::DoNotOptimize(setup->embree->trace(setup->rays.paths, setup->rays.shadows));
+    state.counters["rays/s"] = benchmark::Counter(static_cast<double>(setup->ray_count()) * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 BENCHMARK(embree_alone)->Unit(benchmark::kMillisecond);
 
@@ -90,7 +94,7 @@ void bake_over_embree(benchmark::State& state) {
         const double start = seconds();
         benchmark::DoNotOptimize(integrate_all());
         const double between = seconds();
-        benchmark::DoNotOptimize(setup->embree->intersect(setup->rays));
+        benchmark::DoNotOptimize(setup->embree->trace(setup->rays.paths, setup->rays.shadows));
         ratios.push_back((between - start) / (seconds() - between));
     }
     std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
@@ -103,7 +107,7 @@ void whole_sector(benchmark::State& state) {
     const map::SectorCoordinate middle = setup->sectors[setup->sectors.size() / 2];
     std::size_t probes = 0;
     for (auto _ : state) {
-        const Sector sector = bake::bake_sector(*setup->world, middle, setup->settings).value();
+        const Sector sector = bake::bake_sector(*setup->world, middle, setup->settings).value().sector;
         benchmark::DoNotOptimize(bake::encode_sector(sector).value());
         probes += sector.probes.size();
     }

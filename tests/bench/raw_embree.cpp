@@ -39,23 +39,39 @@ RawEmbree::~RawEmbree() {
     rtcReleaseDevice(device_);
 }
 
-std::size_t RawEmbree::intersect(std::span<const trace::Ray> rays) const {
+namespace {
+
+RTCRay embree_ray(const trace::Ray& ray) {
+    RTCRay r{};
+    r.org_x = ray.origin.x;
+    r.org_y = ray.origin.y;
+    r.org_z = ray.origin.z;
+    r.dir_x = ray.direction.x;
+    r.dir_y = ray.direction.y;
+    r.dir_z = ray.direction.z;
+    r.tfar = ray.far_m;
+    r.mask = ~0u;
+    return r;
+}
+
+}  // namespace
+
+std::size_t RawEmbree::trace(std::span<const trace::Ray> closest, std::span<const trace::Ray> shadows) const {
     std::size_t hits = 0;
-    for (const trace::Ray& ray : rays) {
+    for (const trace::Ray& ray : closest) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        RTCRayHit r{};
-        r.ray.org_x = ray.origin.x;
-        r.ray.org_y = ray.origin.y;
-        r.ray.org_z = ray.origin.z;
-        r.ray.dir_x = ray.direction.x;
-        r.ray.dir_y = ray.direction.y;
-        r.ray.dir_z = ray.direction.z;
-        r.ray.tfar = ray.far_m;
-        r.ray.mask = ~0u;
+        RTCRayHit r{embree_ray(ray), {}};
         r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene_, &context, &r);
         hits += r.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1u : 0u;
+    }
+    for (const trace::Ray& ray : shadows) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RTCRay r = embree_ray(ray);
+        rtcOccluded1(scene_, &context, &r);
+        hits += r.tfar < 0 ? 1u : 0u;
     }
     return hits;
 }

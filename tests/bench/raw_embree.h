@@ -19,7 +19,8 @@ class RawEmbree {
     RawEmbree& operator=(const RawEmbree&) = delete;
 
     // Closest hits of all rays; gives how many hit.
-    [[nodiscard]] std::size_t intersect(std::span<const trace::Ray> rays) const;
+    // Closest hits of the first, occlusion of the second, a ray at a time.
+    [[nodiscard]] std::size_t trace(std::span<const trace::Ray> closest, std::span<const trace::Ray> shadows) const;
 
   private:
     RTCDevice device_;

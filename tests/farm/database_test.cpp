@@ -42,7 +42,7 @@ class DatabaseTest : public testing::Test {
         task.sector = {i, j};
         task.settings.reach_m = 0.3f;
         task.state = state;
-        task.result = {digest_of("result"), 100, 10, 1LL << 40};
+        task.result = {digest_of("result"), 100, 10, 1LL << 40, {"one", "two"}};
         task.error = "it's \"bad\"";
         task.failed_attempts = 2;
         EXPECT_TRUE(database->insert_task(task));

@@ -27,7 +27,7 @@ void say(const WorkerAnswer& answer) {
     std::fflush(stdout);
 }
 
-BakeAnswer baked(const BakeRequest& request) { return {request.manifest, request.settings.rays, request.sector.j, 7}; }
+BakeAnswer baked(const BakeRequest& request) { return {request.manifest, request.settings.rays, request.sector.j, 7, {}}; }
 
 void answer(const BakeRequest& request) {
     static std::map<std::int32_t, int> tries;

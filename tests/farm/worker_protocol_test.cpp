@@ -35,8 +35,9 @@ TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
         EXPECT_EQ(answer.value().id, 9u);
         return answer->what;
     };
-    const auto baked = std::get<BakeAnswer>(round(BakeAnswer{some_digest, 15000, 70, 1LL << 40}));
+    const auto baked = std::get<BakeAnswer>(round(BakeAnswer{some_digest, 15000, 70, 1LL << 40, {"a wall"}}));
     EXPECT_EQ(std::tuple(baked.result, baked.size_bytes, baked.probes, baked.rays), std::tuple(some_digest, 15000, 70, 1LL << 40));
+    EXPECT_EQ(baked.warnings, std::vector<std::string>{"a wall"});
     const auto failure = std::get<FailureAnswer>(round(FailureAnswer{"two\nlines, \"quotes\"", true}));
     EXPECT_EQ(failure.sentence, "two\nlines, \"quotes\"");
     EXPECT_TRUE(failure.may_retry);
@@ -54,7 +55,7 @@ TEST(WorkerProtocol, ASentenceThatIsNotUtf8IsStillALine) {
 }
 
 TEST(WorkerProtocol, GarbageIsNothing) {
-    const std::string request = encode(WorkerRequest(bake_request())), answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3}});
+    const std::string request = encode(WorkerRequest(bake_request())), answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3, {}}});
     for (std::size_t size = 0; size < request.size(); ++size) EXPECT_FALSE(decode_request(request.substr(0, size))) << size;
     for (std::size_t size = 0; size < answer.size(); ++size) EXPECT_FALSE(decode_answer(answer.substr(0, size))) << size;
     for (const std::string& odd : {std::string(), std::string("null"), std::string("[]"), std::string("7"), std::string("{}"), std::string(R"({"id":1})"), std::string("\xff"), std::string("\0", 1), std::string(100000, '[')}) {
@@ -66,7 +67,7 @@ TEST(WorkerProtocol, GarbageIsNothing) {
 }
 
 TEST(WorkerProtocol, NumbersOutOfRangeAreNothing) {
-    const std::string request = encode(WorkerRequest(bake_request())), answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3}});
+    const std::string request = encode(WorkerRequest(bake_request())), answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3, {}}});
     for (const char* bad : {"4294967296", "2147483648", "1.5", "\"1\"", "null", "1e30", "true"}) EXPECT_FALSE(decode_request(replaced(request, "[-16384,", std::string("[") + bad + ","))) << bad;
     for (const char* bad : {"-1", "4294967296", "17.5", "1e30"}) EXPECT_FALSE(decode_request(replaced(request, R"("rays":17)", std::string(R"("rays":)") + bad))) << bad;
     for (const char* bad : {"-9", "9.0", "18446744073709551616", "\"9\""}) EXPECT_FALSE(decode_answer(replaced(answer, R"("id":9)", std::string(R"("id":)") + bad))) << bad;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <climits>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -150,6 +151,15 @@ TEST(FixedPoint, DecodesToTheNearestFloat) {
             ASSERT_EQ(decode_fixed(static_cast<std::int16_t>(q), scale), static_cast<float>(exact)) << q;
         }
     }
+}
+
+TEST(Scale, OfAnExponentIsAnExactPowerOfTwo) {
+    for (int e = -126; e <= 126; ++e) ASSERT_EQ(scale_of_exponent(e), std::ldexp(1.0f, e)) << e;
+}
+
+TEST(Scale, OfAnExponentBeyondTheLimitIsThatOfTheLimit) {
+    for (int e : {127, 128, 254, INT_MAX}) EXPECT_EQ(scale_of_exponent(e), std::ldexp(1.0f, 126)) << e;
+    for (int e : {-127, -128, -256, INT_MIN}) EXPECT_EQ(scale_of_exponent(e), std::ldexp(1.0f, -126)) << e;
 }
 
 TEST(Position, StandsInTheSectorInWholeUnits) {

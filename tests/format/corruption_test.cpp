@@ -8,14 +8,24 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <utility>
 
 namespace drtv::test {
 namespace {
 
-class DamagedSector : public testing::TestWithParam<Codec> {
+struct Kind {
+    const char* name;
+    Codec codec;
+    Sector (*sector)();
+    // Where rules stand close together: a section's kind and an offset in it.
+    std::vector<std::pair<std::uint16_t, std::size_t>> telling;
+};
+
+class DamagedSector : public testing::TestWithParam<Kind> {
   protected:
-    const Bytes file = write_sector(golden_sector(), {GetParam()});
+    const Bytes file = write_sector(GetParam().sector(), {GetParam().codec});
     Sector sector;
 };
 
@@ -51,14 +61,15 @@ TEST_P(DamagedSector, EverySingleBitFlipIsRejected) {
 // Under right checksums the deeper rules are reached. What is accepted must be a sector that can be written and read.
 TEST_P(DamagedSector, RandomDamageUnderRightChecksumsIsRejectedOrASector) {
     std::mt19937 random(3);
-    const std::vector<std::size_t> starts = {section_start(file, 1), section_start(file, 2), section_start(file, 5), section_start(file, 6)};
+    std::vector<std::size_t> starts;
+    for (const auto& [kind, offset] : GetParam().telling) starts.push_back(section_start(file, kind) + offset);
     std::size_t accepted = 0, rejected = 0;
     for (int round = 0; round < 1500; ++round) {
         Edit edit(file);
         for (std::uint32_t n = 0; n <= random() % 3; ++n) {
             const std::size_t where = random() % 4;
             const std::size_t offset = where == 0   ? random() % 256
-                                       : where == 1 ? starts[random() % starts.size()] + random() % 24
+                                       : where == 1 ? std::min(starts[random() % starts.size()] + random() % 24, file.size() - 1)
                                                     : random() % file.size();
             constexpr std::array<std::uint8_t, 6> telling = {0, 1, 0x7F, 0x80, 0xFE, 0xFF};
             edit.u8(offset, random() % 2 == 0 ? telling[random() % telling.size()] : random() % 256);
@@ -84,8 +95,15 @@ TEST_P(DamagedSector, RandomDamageUnderRightChecksumsIsRejectedOrASector) {
     EXPECT_GT(rejected, 200u);
 }
 
-INSTANTIATE_TEST_SUITE_P(, DamagedSector, testing::Values(Codec::raw, Codec::zstd),
-                         [](const auto& codec) { return codec.param == Codec::raw ? "raw" : "zstd"; });
+const std::vector<std::pair<std::uint16_t, std::size_t>> required = {{1, 0}, {2, 0}, {5, 0}, {6, 0}};
+// Of local transfer: header, sources, receivers, masks.
+const std::vector<std::pair<std::uint16_t, std::size_t>> optional = {{2, 0}, {7, 64}, {8, 0}, {8, 16}, {8, 32}, {8, 64}, {8, 96}, {9, 0}};
+
+INSTANTIATE_TEST_SUITE_P(, DamagedSector,
+                         testing::Values(Kind{"raw", Codec::raw, golden_sector, required}, Kind{"zstd", Codec::zstd, golden_sector, required},
+                                         Kind{"raw_1_1", Codec::raw, golden_sector_1_1, optional},
+                                         Kind{"zstd_1_1", Codec::zstd, golden_sector_1_1, optional}),
+                         [](const auto& kind) { return kind.param.name; });
 
 }  // namespace
 }  // namespace drtv::test

@@ -22,9 +22,15 @@ Sector read_golden(const std::string& name) {
     return sector;
 }
 
-TEST(GoldenFile, ReaderGivesTheSameNumbers) { EXPECT_EQ(read_golden("format_1_0.drtv"), golden_sector()); }
+TEST(GoldenFile, ReaderGivesTheSameNumbers) {
+    EXPECT_EQ(read_golden("format_1_0.drtv"), golden_sector());
+    EXPECT_EQ(read_golden("format_1_1.drtv"), golden_sector_1_1());
+}
 
-TEST(GoldenFile, WriterGivesTheSameBytes) { EXPECT_EQ(golden_bytes(), read_test_file(golden_folder + "format_1_0.drtv")); }
+TEST(GoldenFile, WriterGivesTheSameBytes) {
+    EXPECT_EQ(golden_bytes(), read_test_file(golden_folder + "format_1_0.drtv"));
+    EXPECT_EQ(golden_bytes_1_1(), read_test_file(golden_folder + "format_1_1.drtv"));
+}
 
 // The bytes of a zstd frame differ from one version of zstd to the next: only the reader is held to this file.
 TEST(GoldenFile, PackedFileGivesTheSameNumbers) {
@@ -32,7 +38,9 @@ TEST(GoldenFile, PackedFileGivesTheSameNumbers) {
     EXPECT_LT(read_test_file(golden_folder + "format_1_0_zstd.drtv").size(), 1000u);
 }
 
-TEST(GoldenFile, IsValid) { EXPECT_TRUE(validate_sector(read_test_file(golden_folder + "format_1_0.drtv")).empty()); }
+TEST(GoldenFile, IsValid) {
+    for (const char* name : {"format_1_0.drtv", "format_1_1.drtv"}) EXPECT_TRUE(validate_sector(read_test_file(golden_folder + name)).empty()) << name;
+}
 
 // The bytes of a listing as `hexdump -C` prints it: offset, 16 bytes, text; `*` repeats the line before.
 Bytes bytes_of_listing(std::istream& listing) {
@@ -56,14 +64,17 @@ Bytes bytes_of_listing(std::istream& listing) {
     return bytes;
 }
 
-TEST(Specification, ExampleIsTheGoldenFile) {
+// The first listing is the file of version 1.0, the second the local transfer section of that of version 1.1.
+TEST(Specification, ExamplesAreTheGoldenFiles) {
+    const std::vector<Bytes> expected = {golden_bytes(), stored_of(golden_bytes_1_1(), 8)};
+    std::size_t listings = 0;
     std::ifstream page(DRTV_SOURCE_DIR "/format/SPEC.md");
     for (std::string line; std::getline(page, line);) {
         if (line != "```hexdump") continue;
-        EXPECT_EQ(bytes_of_listing(page), golden_bytes());
-        return;
+        ASSERT_LT(listings, expected.size());
+        EXPECT_EQ(bytes_of_listing(page), expected[listings++]);
     }
-    FAIL() << "format/SPEC.md has no block ```hexdump";
+    EXPECT_EQ(listings, expected.size()) << "listings ```hexdump in format/SPEC.md";
 }
 
 }  // namespace

@@ -112,6 +112,15 @@ TEST(Relight, SunMakesNoDirectLight) {
     EXPECT_EQ(colours, BasisColours{});
 }
 
+TEST(Relight, StaticIrradianceIsAddedToWhatIsThere) {
+    const StaticIrradiance light = {{{{32767, 0, 16384, 1}, {0, 32767, 0, 0}, {0, 0, 0, 32767}}}, 3};
+    BasisColours colours{};
+    colours[2] = {1, 2, 3};
+    add_static_irradiance(colours, light);
+    const BasisColours expected = {{{8, 0, 0}, {0, 8, 0}, {1 + 8 * (16384 / 32767.0f), 2, 3}, {8 * (1 / 32767.0f), 0, 8}}};
+    EXPECT_EQ(colours, expected);
+}
+
 TEST(Relight, ConstantSkyIsTheVectorOfTheExactAnswers) {
     const DistantLight sky = constant_sky({1, 2, 4});
     EXPECT_NEAR(sky[0][0], 3.5449, 1e-4);

@@ -83,7 +83,37 @@ Bytes with_sections(const Bytes& file, const std::vector<Section>& sections) {
     return Edit(std::move(out)).u32(at::file_bytes, size).u32(at::section_count, sections.size()).sealed();
 }
 
+Bytes with_stored(const Bytes& file, std::uint16_t kind, std::uint8_t codec, const Bytes& stored) {
+    std::vector<Section> sections = sections_of(file);
+    for (Section& section : sections) {
+        if (section.kind != kind) continue;
+        section.codec = codec;
+        section.stored = stored;
+    }
+    return with_sections(file, sections);
+}
+
+Bytes with_one_more(const Bytes& file, const Section& section) {
+    std::vector<Section> sections = sections_of(file);
+    sections.push_back(section);
+    return with_sections(file, sections);
+}
+
+Bytes without(const Bytes& file, std::uint16_t kind) {
+    std::vector<Section> sections = sections_of(file);
+    std::erase_if(sections, [&](const Section& section) { return section.kind == kind; });
+    return with_sections(file, sections);
+}
+
+Bytes stored_of(const Bytes& file, std::uint16_t kind) {
+    for (const Section& section : sections_of(file)) {
+        if (section.kind == kind) return section.stored;
+    }
+    return {};
+}
+
 Bytes golden_bytes() { return write_sector(golden_sector()); }
+Bytes golden_bytes_1_1() { return write_sector(golden_sector_1_1()); }
 
 Bytes read_test_file(const std::string& path) {
     std::ifstream in(path, std::ios::binary);

@@ -63,8 +63,16 @@ class Edit {
 // A file of these sections with the header of `file`, laid out and sealed by the rules.
 [[nodiscard]] Bytes with_sections(const Bytes& file, const std::vector<Section>& sections);
 
+// The same with other stored bytes in the section of this kind; its raw bytes stay as they are said to be.
+[[nodiscard]] Bytes with_stored(const Bytes& file, std::uint16_t kind, std::uint8_t codec, const Bytes& stored);
+[[nodiscard]] Bytes with_one_more(const Bytes& file, const Section& section);
+[[nodiscard]] Bytes without(const Bytes& file, std::uint16_t kind);
+
+[[nodiscard]] Bytes stored_of(const Bytes& file, std::uint16_t kind);
+
 // The golden file's bytes: what write_sector makes of golden_sector().
 [[nodiscard]] Bytes golden_bytes();
+[[nodiscard]] Bytes golden_bytes_1_1();
 
 // A whole file from disk; empty when it cannot be read.
 [[nodiscard]] Bytes read_test_file(const std::string& path);

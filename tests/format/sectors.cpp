@@ -74,6 +74,47 @@ Sector golden_sector() {
     return sector;
 }
 
+Sector golden_sector_1_1() {
+    Sector sector = golden_sector();
+    Probe& leaves = sector.probes.emplace_back(sector.probes[1]);
+    leaves.position = {49152, 49152, 512};
+    leaves.kind = ProbeKind::vegetation;
+    sector.static_irradiance = {{{{{16384, 8192, 4096, 32767}, {1, 2, 3, 4}, {0, 0, 0, 1}}}, 0},
+                                {{{{100, 200, 300, 400}, {500, 600, 700, 800}, {900, 1000, 1100, 1200}}}, -64},
+                                {{{{32767, 0, 0, 0}, {0, 32767, 0, 0}, {0, 0, 32767, 0}}}, 5}};
+    LocalTransfer& local = sector.local_transfer.emplace();
+    local.sources = {{0, 0, 0, 2}, {0, 0, 1, 0}, {1, -1, 254, -3}};
+    local.receivers.resize(sector.probes.size());
+    constexpr LightCodes up = {{{16000, 0, 12000, 0}, {8000, 0, 6000, 0}, {4000, 0, 3000, 0}}};
+    // The greatest that band 1 may be: 1.1548 * 10000 + 1.
+    constexpr LightCodes at_bound = {{{10000, 11549, 0, 0}, {10000, 0, -11549, 0}, {10000, 0, 0, 11549}}};
+    add_pairs(local, 0, {1}, up);
+    add_pairs(local, 1, {0, 1, 2}, at_bound);
+    add_pairs(local, 2, {2}, {{{32767, -1, -2, -3}, {0, 0, 0, 0}, {1, 2, 2, -2}}});
+    local.pairs[2] = up;
+    local.receivers[0].exponent = -4;
+    local.receivers[1].exponent = -2;
+    local.receivers[2].exponent = -123;
+    sector.convergence = {0.02f, 0.0125f, 0.01875f, 0.03125f, 256, 4096, 3, 65536, 1'234'567, 7'654'321'000};
+    return sector;
+}
+
+std::vector<LocalSource> neighbouring_sources(std::size_t probes) {
+    std::vector<LocalSource> sources;
+    for (std::size_t n = 0; n < probes; ++n) sources.push_back({1, 0, static_cast<std::uint8_t>(n), 0});
+    return sources;
+}
+
+void add_pairs(LocalTransfer& local, std::size_t p, const std::vector<std::size_t>& sources, const LightCodes& codes) {
+    for (std::size_t s : sources) {
+        local.receivers[p].sources[s >> 3] |= static_cast<std::uint8_t>(1u << (s & 7));
+        local.pairs.push_back(codes);
+    }
+    for (std::size_t later = p + 1; later < local.receivers.size(); ++later) {
+        local.receivers[later].first_pair = static_cast<std::uint32_t>(local.pairs.size());
+    }
+}
+
 Sector random_sector(std::uint32_t seed, std::size_t probe_count) {
     Random random(seed);
     Sector sector;
@@ -113,6 +154,55 @@ Sector random_sector(std::uint32_t seed, std::size_t probe_count) {
     sector.statistics.used_distance_m = static_cast<float>(random.between(0, 1 << 20)) / 64;
     sector.statistics.rays = random.any<std::uint64_t>();
     sector.statistics.back_hits = random.any<std::uint64_t>();
+    return sector;
+}
+
+Sector random_sector_1_1(std::uint32_t seed, std::size_t probe_count) {
+    Sector sector = random_sector(seed, probe_count);
+    Random random(seed + 1000);
+    const auto code = [&](std::int64_t least, std::int64_t most) { return static_cast<std::int16_t>(random.between(least, most)); };
+    for (std::size_t p = 0; p < probe_count; ++p) {
+        StaticIrradiance& light = sector.static_irradiance.emplace_back();
+        for (auto& channel : light.codes) {
+            for (std::int16_t& q : channel) q = code(0, 32767);
+        }
+        light.exponent = static_cast<std::int8_t>(random.between(-64, 64));
+    }
+    LocalTransfer& local = sector.local_transfer.emplace();
+    // Both widths of the masks, and the ends of both.
+    constexpr std::array<std::int64_t, 6> source_counts = {0, 1, 127, 128, 129, 255};
+    local.sources = neighbouring_sources(static_cast<std::size_t>(source_counts[seed % source_counts.size()]));
+    local.receivers.resize(probe_count);
+    for (LocalSource& source : local.sources) {
+        source.dj = static_cast<std::int8_t>(random.between(-1, 1));
+        source.exponent = static_cast<std::int8_t>(random.between(-30, 31));
+    }
+    for (std::size_t p = 0; p < probe_count; ++p) {
+        local.receivers[p].exponent = static_cast<std::int8_t>(random.between(-96, 32));
+        std::size_t left = max_local_sources;
+        for (std::size_t s = 0; s < local.sources.size() && left > 0; ++s) {
+            if (random.between(0, 2) == 0) continue;
+            LightCodes codes;
+            for (auto& channel : codes) {
+                channel[0] = code(0, 28000);
+                for (std::size_t i = 1; i < sh_count; ++i) channel[i] = code(-channel[0], channel[0]);
+            }
+            add_pairs(local, p, {s}, codes);
+            --left;
+        }
+    }
+    const auto error = [&](float least) { return least + static_cast<float>(random.between(0, 1 << 20)) / (1 << 20); };
+    Convergence& c = sector.convergence.emplace();
+    c.error_asked = error(0);
+    c.error_median = error(0);
+    c.error_p95 = error(c.error_median);
+    c.error_max = error(c.error_p95);
+    c.paths_least = static_cast<std::uint32_t>(random.between(0, 1 << 20));
+    c.paths_most = c.paths_least + static_cast<std::uint32_t>(random.between(0, 1 << 20));
+    c.local_bounces = random.any<std::uint32_t>();
+    c.local_rays = random.any<std::uint32_t>();
+    c.static_rays = random.any<std::uint64_t>();
+    c.local_transfer_rays = random.any<std::uint64_t>();
     return sector;
 }
 

@@ -4,68 +4,10 @@ import os
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
-import zlib
 
 import sector_file
-
-DRTV, GOLDEN_FOLDER = sys.argv[1:3]
-GOLDEN = os.path.join(GOLDEN_FOLDER, "format_1_0.drtv")
-USAGE, UNREADABLE, INVALID = 1, 2, 3
-
-
-def drtv(*arguments, **options):
-    return subprocess.run([DRTV, *arguments], capture_output=True, timeout=60, **options)
-
-
-def golden():
-    with open(GOLDEN, "rb") as file:
-        return bytearray(file.read())
-
-
-def rounded(value):
-    """All numbers as binary32, which is what the file holds."""
-    if isinstance(value, dict):
-        return {key: rounded(member) for key, member in value.items()}
-    if isinstance(value, list):
-        return [rounded(element) for element in value]
-    return sector_file.as_float32(value) if isinstance(value, float) else value
-
-
-class Tool(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def write(self, name, data):
-        os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
-        with open(self.path(name), "wb") as file:
-            file.write(data)
-        return self.path(name)
-
-    def expect(self, exit_code, *arguments, err="", out=None, **options):
-        """Runs and checks: the exit code, words on stderr (none: it is empty), words on stdout when asked."""
-        result = drtv(*arguments, **options)
-        stdout, stderr = result.stdout.decode(), result.stderr.decode()
-        self.assertEqual(result.returncode, exit_code, (arguments, stdout[-500:], stderr))
-        if err:
-            self.assertIn(err, stderr)
-            self.assertTrue(stderr.startswith("drtv: ") or stderr.startswith("usage: "), stderr)
-        else:
-            self.assertEqual(stderr, "")
-        if out is not None:
-            self.assertIn(out, stdout)
-        return stdout
-
-    def broken(self, name="broken.drtv"):
-        data = golden()
-        data[400] ^= 1
-        return self.write(name, data)
+from tool_case import DRTV, GOLDEN, GOLDEN_1_1, GOLDEN_FOLDER, INVALID, UNREADABLE, USAGE, Tool, golden, rounded, seal
 
 
 class Usage(Tool):
@@ -81,7 +23,7 @@ class Usage(Tool):
                 self.assertEqual(self.expect(USAGE, *arguments, err=words), "")
 
     def test_preview_refuses_numbers_and_quantities_that_are_none(self):
-        for option, values in [("--metres-per-pixel", ["0", "-1", "1000", "1m", "", "nan", "inf"]), ("--quantity", ["", "sun", "Sky"])]:
+        for option, values in [("--metres-per-pixel", ["0", "-1", "1000", "1m", "", "nan", "inf"]), ("--quantity", ["", "sun", "Sky", "back hits"])]:
             for value in values:
                 with self.subTest(option=option, value=value):
                     self.expect(USAGE, "preview", GOLDEN, "--out", self.path("a.png"), option, value, err=f'not "{value}"')
@@ -90,7 +32,7 @@ class Usage(Tool):
     def test_help_and_version_go_to_stdout(self):
         for word in ("--help", "-h", "help"):
             self.expect(0, word, out="exit status: 0 valid, 1 wrong usage")
-        self.expect(0, "--version", out="sector format 1.0")
+        self.expect(0, "--version", out="sector format 1.1")
 
     def test_full_disk_behind_stdout_is_not_success(self):
         for arguments in (["dump", GOLDEN, "--json"], ["info", GOLDEN], ["validate", GOLDEN]):
@@ -181,32 +123,47 @@ class Validate(Tool):
 
 class Show(Tool):
     def test_dump_equals_what_the_page_says_the_bytes_mean(self):
-        dumped = json.loads(self.expect(0, "dump", GOLDEN, "--json"))
-        self.assertEqual(rounded(dumped), rounded(sector_file.read(bytes(golden()))))
+        for path in (GOLDEN, GOLDEN_1_1):
+            with self.subTest(path=path):
+                dumped = json.loads(self.expect(0, "dump", path, "--json"))
+                self.assertEqual(rounded(dumped), rounded(sector_file.read(bytes(golden(path)))))
+
+    def test_dump_has_the_optional_keys_only_where_the_sections_are(self):
+        keys = {}
+        for path in (GOLDEN, GOLDEN_1_1):
+            dumped = json.loads(self.expect(0, "dump", path, "--json"))
+            keys[path] = [key in dumped for key in ("convergence",)] + [key in dumped["probes"][0] for key in ("static_irradiance", "local")]
+        self.assertEqual(keys, {GOLDEN: [False] * 3, GOLDEN_1_1: [True] * 3})
+
+    def test_dump_of_exponents_beyond_their_limits_is_still_finite(self):
+        data = golden(GOLDEN_1_1)
+        data[4992 + 23] = data[4992 + 36] = 127  # of source 1 and of receiver 0, which are a pair
+        struct.pack_into("<3b", data, 4912 + 72, 127, -128, 127)
+        path = self.write("steep.drtv", seal(data))
+        self.expect(INVALID, "validate", path, out="error STATIC_EXPONENT")
+        self.assertNotRegex(self.expect(0, "dump", path, "--json"), "null|inf|nan")
 
     def test_dump_of_a_packed_file_is_the_same(self):
         packed = os.path.join(GOLDEN_FOLDER, "format_1_0_zstd.drtv")
         self.assertEqual(self.expect(0, "dump", "--json", packed), self.expect(0, "dump", GOLDEN, "--json"))
 
     def test_dump_of_the_golden_file_is_frozen(self):
-        with open(os.path.join(GOLDEN_FOLDER, "format_1_0.json"), encoding="utf-8") as file:
-            self.assertEqual(self.expect(0, "dump", GOLDEN, "--json"), file.read())
+        for path in (GOLDEN, GOLDEN_1_1):
+            with open(path.replace(".drtv", ".json"), encoding="utf-8") as file:
+                self.assertEqual(self.expect(0, "dump", path, "--json"), file.read())
 
     def test_dump_is_exact_far_from_the_origin(self):
         # Sector (16384, -16384) and a z origin of 2^30 - 1 units: a float would round the positions.
         data = golden()
         struct.pack_into("<iii", data, 16, 16384, -16384, 2**30 - 1)
         struct.pack_into("<H", data, 304, 16385)
-        struct.pack_into("<Q", data, 64 + 32 + 24, sector_file.xxh64(bytes(data[304:320])))
-        struct.pack_into("<Q", data, 56, sector_file.xxh64(bytes(data[:56] + data[64:256])))
-        dumped = json.loads(self.expect(0, "dump", self.write("far.drtv", data), "--json"))
+        dumped = json.loads(self.expect(0, "dump", self.write("far.drtv", seal(data)), "--json"))
         self.assertEqual(dumped["probes"][0]["position"], sector_file.read(bytes(data))["probes"][0]["position"])
 
     def test_version_shown_is_the_files_own(self):
         data = golden()
         data[6] = 3
-        struct.pack_into("<Q", data, 56, sector_file.xxh64(bytes(data[:56] + data[64:256])))
-        path = self.write("minor.drtv", data)
+        path = self.write("minor.drtv", seal(data))
         self.expect(0, "info", path, out="format 1.3\n")
         self.assertEqual(json.loads(self.expect(0, "dump", path, "--json"))["format_version"], "1.3")
 
@@ -216,50 +173,19 @@ class Show(Tool):
                       "rays 2048, bounces 3, reach 512 m, min_distance 6 m", "000102030405", "9 candidates", "7.5 m", "12288", "statistics", "4112 bytes"):
             self.assertIn(words, stdout)
 
+    def test_info_has_a_line_for_each_optional_section(self):
+        lines = {"static light    up to 32 (E/pi)\n", "local lights    5 pairs of probe and source, 3 sources, of which 1 in neighbours\n",
+                 "convergence     error 0.02 asked, 0.0125 median, 0.01875 at 95 %, 0.03125 at most; 256 to 4096 paths a probe\n"}
+        stdout, before = self.expect(0, "info", GOLDEN_1_1), self.expect(0, "info", GOLDEN)
+        for line in lines:
+            self.assertIn(line, stdout)
+            self.assertNotIn(line.split("  ")[0], before)
+
     def test_broken_file_exits_3_with_the_reason_on_stderr(self):
         path = self.broken()
         for arguments in (["info"], ["dump", "--json"], ["preview", "--out", self.path("a.png")]):
             self.assertEqual(self.expect(INVALID, *arguments, path, err="its checksum does not match its bytes"), "")
         self.assertEqual(os.listdir(self.folder), ["broken.drtv"])
-
-
-class Preview(Tool):
-    def read_png(self, path):
-        """Width, height and filtered rows; checks every chunk's CRC and the data's Adler-32."""
-        with open(path, "rb") as file:
-            data = file.read()
-        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
-        at, chunks = 8, []
-        while at < len(data):
-            size, = struct.unpack_from(">I", data, at)
-            body = data[at + 4:at + 8 + size]
-            self.assertEqual(struct.unpack_from(">I", data, at + 8 + size)[0], zlib.crc32(body))
-            chunks.append((body[:4], body[4:]))
-            at += 12 + size
-        self.assertEqual([kind for kind, _ in chunks], [b"IHDR", b"IDAT", b"IEND"])
-        width, height, *rest = struct.unpack(">IIBBBBB", chunks[0][1])
-        self.assertEqual(rest, [8, 2, 0, 0, 0])
-        rows = zlib.decompress(chunks[1][1])
-        self.assertEqual(len(rows), height * (3 * width + 1))
-        return width, height, rows
-
-    def test_folder_becomes_a_picture(self):
-        self.write("sectors/one.drtv", golden())
-        for quantity in ("relit", "sky"):
-            out = self.path(quantity + ".png")
-            stdout = self.expect(0, "preview", self.path("sectors"), "--out", out, "--metres-per-pixel", "0.5", "--quantity", quantity)
-            self.assertIn("128 x 128 pixels, 1 sectors, 2 probes", stdout)
-            width, height, rows = self.read_png(out)
-            self.assertEqual((width, height), (128, 128))
-            self.assertGreater(len(set(rows)), 8)
-        self.assertEqual(sorted(os.listdir(self.folder)), ["relit.png", "sectors", "sky.png"])
-
-    def test_place_that_cannot_be_written_exits_2_and_leaves_nothing(self):
-        out = self.path("no such folder/a.png")
-        self.expect(UNREADABLE, "preview", GOLDEN, "--out", out, "--metres-per-pixel", "1", err="cannot write " + out)
-        os.mkdir(self.path("folder.png"))
-        self.expect(UNREADABLE, "preview", GOLDEN, "--out", self.path("folder.png"), "--metres-per-pixel", "1", err="cannot write")
-        self.assertEqual(os.listdir(self.folder), ["folder.png"])
 
 
 if __name__ == "__main__":

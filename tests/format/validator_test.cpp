@@ -20,10 +20,23 @@ struct Case {
     std::string report;  // CODE at byte, path: message
 };
 
-Bytes golden_with(const std::function<void(Sector&)>& change, Codec codec = Codec::raw) {
-    Sector sector = golden_sector();
+Bytes changed(Sector sector, const std::function<void(Sector&)>& change, Codec codec = Codec::raw) {
     change(sector);
     return write_sector(sector, {codec});
+}
+
+Bytes golden_with(const std::function<void(Sector&)>& change, Codec codec = Codec::raw) { return changed(golden_sector(), change, codec); }
+
+// The optional sections stand at 4912, 4992 and 5232 there: three probes, three local sources, five pairs.
+Bytes golden_1_1_with(const std::function<void(Sector&)>& change) { return changed(golden_sector_1_1(), change); }
+
+Bytes with_sources_of_one_probe(std::size_t count) {
+    return golden_1_1_with([&](Sector& s) {
+        LocalTransfer& local = s.local_transfer.emplace();
+        local.sources = neighbouring_sources(count);
+        local.receivers.resize(s.probes.size());
+        for (std::size_t source = 0; source < count; ++source) add_pairs(local, 1, {source}, {});
+    });
 }
 
 std::string report_of(const Bytes& file) {
@@ -83,6 +96,37 @@ const std::vector<Case> cases = {
      },
      "SETTINGS_RANGE at 256, settings.rays: is 0\nFIXED_POINT_RESERVED at 338, probe[0].transfer.r[0][1]: code -32768 is reserved\n"
      "GRID_REFERENCE at 551, grid.cells[7]: names probe 9, the sector has 2"},
+    {"ReservedCodeInStaticIrradiance", [] { return golden_1_1_with([](Sector& s) { s.static_irradiance[2].codes[1][0] = INT16_MIN; }); },
+     "FIXED_POINT_RESERVED at 4968, probe[2].static_irradiance.g[0]: code -32768 is reserved"},
+    {"NegativeStaticIrradiance", [] { return golden_1_1_with([](Sector& s) { s.static_irradiance[0].codes[2][3] = -1; }); },
+     "STATIC_IRRADIANCE_RANGE at 4934, probe[0].static_irradiance.b[3]: code -1 is negative"},
+    {"StaticExponentTooSmall", [] { return golden_1_1_with([](Sector& s) { s.static_irradiance[1].exponent = -65; }); },
+     "STATIC_EXPONENT at 4985, probe[1].static_irradiance.exponent: -65 is not between -64 and 64"},
+    {"StaticExponentTooLarge", [] { return golden_1_1_with([](Sector& s) { s.static_irradiance[2].exponent = 65; }); },
+     "STATIC_EXPONENT at 4986, probe[2].static_irradiance.exponent: 65 is not between -64 and 64"},
+    {"TooManySourcesOfOneProbe", [] { return with_sources_of_one_probe(129); },
+     "LOCAL_SOURCE_COUNT at 5600, probe[1].local: takes light from 129 sources, over the limit of 128"},
+    {"SourceTwice", [] { return golden_1_1_with([](Sector& s) { s.local_transfer->sources[1].probe = 0; }); },
+     "LOCAL_SOURCE_DUPLICATE at 5012, local_transfer.sources[1]: is that of source 0"},
+    {"ReservedCodeInLocalTransfer", [] { return golden_1_1_with([](Sector& s) { s.local_transfer->pairs[3][1][0] = INT16_MIN; }); },
+     "FIXED_POINT_RESERVED at 5184, probe[1].local[2].g[0]: code -32768 is reserved"},
+    {"LocalExponentTooSmall", [] { return golden_1_1_with([](Sector& s) { s.local_transfer->receivers[2].exponent = -124; }); },
+     "LOCAL_EXPONENT at 5044, probe[2].local[0]: exponents -124 and -3 add up to -127, not between -126 and 63"},
+    {"LocalExponentTooLarge", [] { return golden_1_1_with([](Sector& s) { s.local_transfer->receivers[0].exponent = 64; }); },
+     "LOCAL_EXPONENT at 5028, probe[0].local[0]: exponents 64 and 0 add up to 64, not between -126 and 63"},
+    {"LocalTransferNegative", [] { return golden_1_1_with([](Sector& s) { s.local_transfer->pairs[0][0] = {-1, 0, 0, 0}; }); },
+     "LOCAL_TRANSFER_RANGE at 5104, probe[0].local[0].r[0]: code -1 is negative"},
+    {"LocalTransferOverBand0", [] { return golden_1_1_with([](Sector& s) { s.local_transfer->pairs[4][2] = {10000, 0, 0, -11550}; }); },
+     "LOCAL_TRANSFER_RANGE at 5222, probe[2].local[0].b[3]: code -11550 is beyond 1.1548 times code 10000 of band 0"},
+    {"NegativeErrorAsked", [] { return golden_1_1_with([](Sector& s) { s.convergence->error_asked = -1; }); },
+     "CONVERGENCE_RANGE at 5232, convergence.error_asked: -1.000000 is less than 0"},
+    {"NegativeMedian", [] { return golden_1_1_with([](Sector& s) { s.convergence->error_median = -1; }); },
+     "CONVERGENCE_RANGE at 5236, convergence.error_median: -1.000000 is less than 0"},
+    {"ErrorsOutOfOrder", [] { return golden_1_1_with([](Sector& s) { s.convergence = {0, 3, 2, 1, 0, 0, 0, 0, 0, 0}; }); },
+     "CONVERGENCE_RANGE at 5240, convergence.error_p95: 2.000000 is less than the median\n"
+     "CONVERGENCE_RANGE at 5244, convergence.error_max: 1.000000 is less than the 95th percentile"},
+    {"MostPathsFewerThanLeast", [] { return golden_1_1_with([](Sector& s) { s.convergence->paths_most = 255; }); },
+     "CONVERGENCE_RANGE at 5252, convergence.paths_most: 255 is less than the least"},
 };
 
 class SectorValidator : public testing::TestWithParam<Case> {};
@@ -124,6 +168,17 @@ TEST(Validator, StopsAtTheNumberOfFindingsAskedFor) {
     EXPECT_EQ(validate_sector(file, 3).size(), 3u);
     EXPECT_EQ(validate_sector(file).size(), 100u);
     EXPECT_EQ(validate_sector(file, 10'000).size(), 4096u);
+}
+
+TEST(Validator, EndsOfTheOptionalRangesAreAllowed) {
+    EXPECT_EQ(report_of(golden_bytes_1_1()), "");  // the smallest exponents, and the largest band 1
+    EXPECT_EQ(report_of(with_sources_of_one_probe(128)), "");
+    EXPECT_EQ(report_of(golden_1_1_with([](Sector& s) {
+                  s.static_irradiance[0].exponent = 64;
+                  s.local_transfer->receivers[0].exponent = 63;
+                  s.convergence = Convergence{};
+              })),
+              "");
 }
 
 TEST(Validator, LargestPassiveTransferIsAllowed) {

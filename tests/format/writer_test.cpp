@@ -12,14 +12,23 @@ namespace {
 
 constexpr std::array<std::size_t, 7> probe_counts = {0, 1, 2, 3, 70, 254, 255};
 
-class SectorWriter : public testing::TestWithParam<Codec> {
+struct Kind {
+    const char* name;
+    Codec codec;
+    Sector (*sector)(std::uint32_t seed, std::size_t probe_count);
+    std::uint16_t minor;
+    std::size_t sections;
+};
+
+class SectorWriter : public testing::TestWithParam<Kind> {
   protected:
-    [[nodiscard]] static Bytes write(const Sector& sector) { return write_sector(sector, {GetParam()}); }
+    [[nodiscard]] static Bytes write(const Sector& sector) { return write_sector(sector, {GetParam().codec}); }
+    [[nodiscard]] static Sector make(std::uint32_t seed, std::size_t probe_count) { return GetParam().sector(seed, probe_count); }
 };
 
 TEST_P(SectorWriter, WhatIsWrittenIsReadBack) {
     for (std::uint32_t seed = 0; seed < 40; ++seed) {
-        const Sector sector = random_sector(seed, seed < 7 ? probe_counts[seed] : seed * 6);
+        const Sector sector = make(seed, seed < 7 ? probe_counts[seed] : seed * 6);
         Sector read;
         const ReadStatus status = read_sector(write(sector), read);
         ASSERT_TRUE(status.ok()) << "seed " << seed << ": " << status.message;
@@ -29,7 +38,7 @@ TEST_P(SectorWriter, WhatIsWrittenIsReadBack) {
 
 TEST_P(SectorWriter, WhatIsReadIsWrittenAsTheSameBytes) {
     for (std::size_t count : probe_counts) {
-        const Bytes bytes = write(random_sector(99, count));
+        const Bytes bytes = write(make(99, count));
         Sector read;
         ASSERT_TRUE(read_sector(bytes, read).ok());
         ASSERT_EQ(write(read), bytes);
@@ -38,7 +47,7 @@ TEST_P(SectorWriter, WhatIsReadIsWrittenAsTheSameBytes) {
 
 TEST_P(SectorWriter, ValidSectorPassesTheValidator) {
     for (std::size_t count : probe_counts) {
-        for (const Finding& finding : validate_sector(write(random_sector(5, count)))) {
+        for (const Finding& finding : validate_sector(write(make(5, count)))) {
             ADD_FAILURE() << count << " probes: " << finding.issue->code << ' ' << finding.path << ' ' << finding.message;
         }
     }
@@ -46,9 +55,9 @@ TEST_P(SectorWriter, ValidSectorPassesTheValidator) {
 
 TEST_P(SectorWriter, SectionsAreAlignedAndInTheOrderOfKinds) {
     std::vector<SectionEntry> entries;
-    const Bytes bytes = write(random_sector(1, 33));
+    const Bytes bytes = write(make(1, 33));
     ASSERT_TRUE(read_section_table(bytes, entries).ok());
-    ASSERT_EQ(entries.size(), 6u);
+    ASSERT_EQ(entries.size(), GetParam().sections);
     for (std::size_t n = 0; n < entries.size(); ++n) {
         EXPECT_EQ(entries[n].kind, n + 1);
         EXPECT_EQ(entries[n].version, 1);
@@ -57,8 +66,12 @@ TEST_P(SectorWriter, SectionsAreAlignedAndInTheOrderOfKinds) {
     EXPECT_EQ(entries.back().offset + entries.back().stored_bytes, bytes.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(, SectorWriter, testing::Values(Codec::raw, Codec::zstd),
-                         [](const auto& codec) { return codec.param == Codec::raw ? "raw" : "zstd"; });
+TEST_P(SectorWriter, FileHasTheLeastVersionThatItsSectionsNeed) { EXPECT_EQ(get(write(make(1, 3)), at::minor, 2), GetParam().minor); }
+
+INSTANTIATE_TEST_SUITE_P(, SectorWriter,
+                         testing::Values(Kind{"raw", Codec::raw, random_sector, 0, 6}, Kind{"zstd", Codec::zstd, random_sector, 0, 6},
+                                         Kind{"raw_1_1", Codec::raw, random_sector_1_1, 1, 9}, Kind{"zstd_1_1", Codec::zstd, random_sector_1_1, 1, 9}),
+                         [](const auto& kind) { return kind.param.name; });
 
 TEST(SectorSize, OfSeventyProbesIsWithinTheSeedsBudget) {
     EXPECT_EQ(write_sector(random_sector(1, 70)).size(), 256u + 48 + 560 + 560 + 6720 + 4112 + 40);

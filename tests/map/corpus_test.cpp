@@ -100,11 +100,11 @@ void expect_sound(const Map& map) {
             for (const glm::uvec3& t : primitive.triangles) ASSERT_TRUE(t.x < primitive.positions.size() && t.y < primitive.positions.size() && t.z < primitive.positions.size());
             for (const glm::vec3& p : primitive.positions) ASSERT_TRUE(finite(p));
             if (!primitive.colours.empty()) { EXPECT_EQ(primitive.colours.size(), primitive.positions.size()); }
-            if (map.materials.at(primitive.material).texture != map::no_texture) { EXPECT_EQ(primitive.uvs.size(), primitive.positions.size()); }
+            if (map.materials.at(primitive.material).base_texture.present()) { EXPECT_EQ(primitive.uvs.size(), primitive.positions.size()); }
         }
     }
     for (const map::Material& material : map.materials) {
-        if (material.texture != map::no_texture) { EXPECT_LT(material.texture, map.textures.size()); }
+        if (material.base_texture.present()) { EXPECT_LT(material.base_texture.texture, map.textures.size()); }
     }
     for (const map::Texture& texture : map.textures) EXPECT_EQ(texture.rgba.size(), std::size_t{texture.width} * texture.height * 4);
     for (const map::Object& object : map.objects) {

@@ -3,6 +3,7 @@
 #include "bakerd/map/import.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -150,6 +151,18 @@ int GltfBuilder::add_material(const Surfacing& surfacing) {
         material["alphaMode"] = "MASK";
         material["alphaCutoff"] = surfacing.alpha_cutoff;
     }
+    if (surfacing.blended) material["alphaMode"] = "BLEND";
+    if (surfacing.emission != glm::vec3(0)) {
+        material["emissiveFactor"] = {surfacing.emission.x, surfacing.emission.y, surfacing.emission.z};
+        material["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", surfacing.emission_strength}};
+        use_extension("KHR_materials_emissive_strength");
+    }
+    if (surfacing.emission_texture >= 0) material["emissiveTexture"] = {{"index", surfacing.emission_texture}};
+    if (surfacing.transmission > 0) {
+        const glm::vec3& through = surfacing.transmission_colour;
+        material["extensions"]["KHR_materials_diffuse_transmission"] = {{"diffuseTransmissionFactor", surfacing.transmission}, {"diffuseTransmissionColorFactor", {through.x, through.y, through.z}}};
+        use_extension("KHR_materials_diffuse_transmission");
+    }
     return append(root_, "materials", std::move(material));
 }
 
@@ -186,7 +199,27 @@ void GltfBuilder::place_instances(int mesh, std::span<const Placement> placement
     const json attributes = {{"TRANSLATION", add_accessor(shifts, 3)}, {"ROTATION", add_accessor(turns, 4)}, {"SCALE", add_accessor(scales, 3)}};
     const int node = append(root_, "nodes", {{"mesh", mesh}, {"extras", {{"bake_role", role}}}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}});
     root_["scenes"][0]["nodes"].push_back(node);
-    root_["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+    use_extension("EXT_mesh_gpu_instancing");
+}
+
+void GltfBuilder::place_lamp(const Lamp& lamp) {
+    json light = {{"type", lamp.type}, {"color", {lamp.colour.x, lamp.colour.y, lamp.colour.z}}, {"intensity", lamp.intensity}};
+    if (lamp.range_m > 0) light["range"] = lamp.range_m;
+    if (lamp.type == "spot") light["spot"] = {{"innerConeAngle", lamp.inner_cone_radians}, {"outerConeAngle", lamp.outer_cone_radians}};
+    const int index = append(root_["extensions"]["KHR_lights_punctual"], "lights", std::move(light));
+    use_extension("KHR_lights_punctual");
+    // The light shines along the node's -z, of glTF's axes: the shortest turn of (0, 0, -1) to the direction.
+    const std::array<float, 3> d = gltf_from_world(glm::normalize(lamp.direction));
+    const glm::dvec3 to(d[0], d[1], d[2]), axis = glm::cross(glm::dvec3(0, 0, -1), to);
+    glm::dvec4 turn(axis, 1 - to.z);
+    turn = glm::length(turn) < 1e-6 ? glm::dvec4(1, 0, 0, 0) : glm::normalize(turn);
+    const int node = append(root_, "nodes", {{"translation", gltf_from_world(lamp.position)}, {"rotation", {turn.x, turn.y, turn.z, turn.w}}, {"extensions", {{"KHR_lights_punctual", {{"light", index}}}}}});
+    root_["scenes"][0]["nodes"].push_back(node);
+}
+
+void GltfBuilder::use_extension(const std::string& name) {
+    json& used = root_["extensionsUsed"];
+    if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
 }
 
 map::Map GltfBuilder::import() const {

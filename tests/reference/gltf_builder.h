@@ -37,6 +37,22 @@ struct Surfacing {
     bool double_sided = false, masked = false;
     double alpha_cutoff = 0.5;
     int texture = -1;
+    bool blended = false;
+    glm::vec3 emission{0};  // factor, at most 1
+    double emission_strength = 1;
+    int emission_texture = -1;
+    double transmission = 0;
+    glm::vec3 transmission_colour{1};
+};
+
+// KHR_lights_punctual. `range_m` 0 is none.
+struct Lamp {
+    std::string type = "point";
+    glm::vec3 colour{1};
+    double intensity = 1;
+    double range_m = 0;
+    double inner_cone_radians = 0, outer_cone_radians = 0.7;  // spot only
+    glm::vec3 position{0}, direction{0, 0, -1};
 };
 
 // Scale, then a turn about z, then a shift.
@@ -57,6 +73,8 @@ class GltfBuilder {
     // EXT_mesh_gpu_instancing.
     void place_instances(int mesh, std::span<const Placement> placements, const std::string& role = "static");
 
+    void place_lamp(const Lamp& lamp);
+
     // Throws std::runtime_error when the importer refuses.
     [[nodiscard]] map::Map import() const;
 
@@ -64,6 +82,7 @@ class GltfBuilder {
     int add_accessor(std::span<const float> values, std::size_t components);
     int add_accessor(std::span<const std::uint32_t> values);
     int add_view(std::span<const std::uint8_t> bytes);
+    void use_extension(const std::string& name);
 
     nlohmann::json root_ = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", nlohmann::json::array()}}}}};
 };

@@ -1,141 +1,156 @@
 #include "tests/reference/reference_integrator.h"
 
+#include "tests/reference/reference_walk.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
+#include <vector>
 
 namespace drtv::reference {
 namespace {
 
 using std::numbers::pi;
 
-// Far over double's rounding at 100 km, far under anything modelled.
-constexpr double surface_offset_m = 1e-7;
-
-struct Random {
-    std::mt19937_64 engine;
-    double next() { return static_cast<double>(engine() >> 11) * 0x1p-53; }
+// What comes to the probe along one ray.
+struct Radiance {
+    std::array<std::array<double, sh_count>, channel_count> sky{};  // by bounce, when the sky's radiance is Y_i
+    glm::dvec3 lights{};                                            // emission seen and all bounces
 };
 
-// Uniform on the sphere for u and v in [0, 1).
-glm::dvec3 sphere_direction(double u, double v) {
-    const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z)), angle = 2 * pi * v;
-    return {r * std::cos(angle), r * std::sin(angle), z};
-}
+struct Batch {
+    Transfer transfer{};
+    Visibility visibility{};
+    Irradiance irradiance{};
+};
 
-// Uniform on the hemisphere around the unit `normal`.
-glm::dvec3 hemisphere_direction(double u, double v, const glm::dvec3& normal) {
-    const glm::dvec3 local = sphere_direction(u / 2, v);
-    const glm::dvec3 aside = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 tangent = glm::normalize(glm::cross(aside, normal));
-    return local.x * tangent + local.y * glm::cross(normal, tangent) + local.z * normal;
-}
-
-struct Integrator {
-    const Scene& scene;
-    const glm::dvec3& probe;
-    const Options& options;
-    Random random;
-
-    // A hit outside the sphere of reach around the probe is none; beyond it there is nothing to come back from.
-    [[nodiscard]] std::optional<SurfaceHit> closest(const glm::dvec3& origin, const glm::dvec3& direction) const {
-        auto hit = scene.closest(origin, direction);
-        if (hit && glm::length(origin + hit->distance_m * direction - probe) > options.reach_m) hit.reset();
-        return hit;
-    }
-
-    // One sample of Lout_{c,i}(hit, -arriving): adds it, times `weight`, to radiance[c][i]. The first direction is made
-    // of `u` and `v`.
-    void follow(SurfaceHit hit, glm::dvec3 origin, glm::dvec3 arriving, double u, double v, double weight, std::array<std::array<double, sh_count>, channel_count>& radiance) {
-        glm::dvec3 throughput(weight);
-        for (std::uint32_t touched = 1; touched <= options.bounces; ++touched) {
-            if (hit.absorbs) return;
-            origin += hit.distance_m * arriving + surface_offset_m * hit.normal;
-            const glm::dvec3 leaving = hemisphere_direction(u, v, hit.normal);
-            // Lambert: albedo / pi, times the cosine, over the density 1 / (2 pi) of the hemisphere.
-            throughput *= hit.albedo * (2 * glm::dot(leaving, hit.normal));
-            const auto next = closest(origin, leaving);
-            if (!next) {
-                if (leaving.z <= 0) return;  // below the horizon it is black
-                const std::array<double, sh_count> sh = {y0, y1 * leaving.y, y1 * leaving.z, y1 * leaving.x};
-                for (std::size_t c = 0; c < channel_count; ++c) {
-                    for (std::size_t i = 0; i < sh_count; ++i) radiance[c][i] += throughput[static_cast<glm::length_t>(c)] * sh[i];
-                }
-                return;
-            }
-            hit = *next;
-            arriving = leaving;
-            u = random.next();
-            v = random.next();
+class Integrator {
+  public:
+    Integrator(const Scene& scene, const glm::dvec3& position, const Options& options) : options_(options), walk_{scene, position, options.reach_m, Random(options.seed)} {
+        for (const map::Light& light : scene.lights()) {
+            if (light.kind == map::LightKind::directional || walk_.within_reach(glm::dvec3(light.position))) lights_.push_back(&light);
         }
     }
 
-    void add_first_ray(const glm::dvec3& w, Transfer& transfer, Visibility& visibility) {
-        const auto hit = closest(probe, w);
+    Batch run_batch() {
+        Batch batch;
+        const double side = options_.strata;
+        for (std::uint32_t row = 0; row < options_.strata; ++row) {
+            add_direct_light(1 / side, batch);
+            for (std::uint32_t column = 0; column < options_.strata; ++column) {
+                const double u = (row + walk_.random.next()) / side, v = (column + walk_.random.next()) / side;
+                add_first_ray(sphere_direction(u, v), 1 / (side * side), batch);
+            }
+        }
+        return batch;
+    }
+
+  private:
+    // Of the lights without size; a try each, as blended surfaces may lie between.
+    void add_direct_light(double weight, Batch& batch) {
+        for (const map::Light* light : lights_) {
+            const auto incident = incidence(*light, walk_.probe);
+            if (!incident || !walk_.lit(walk_.probe, *incident)) continue;
+            for (std::size_t b = 0; b < basis_count; ++b) {
+                const double share = weight * std::max(0.0, glm::dot(incident->towards, basis[b])) / pi;
+                for (std::size_t c = 0; c < channel_count; ++c) batch.irradiance[c][b] += share * incident->irradiance[static_cast<glm::length_t>(c)];
+            }
+        }
+    }
+
+    void add_first_ray(const glm::dvec3& w, double weight, Batch& batch) {
+        const auto hit = walk_.closest(walk_.probe, w);
         if (!hit) {
-            for (std::size_t b = 0; b < basis_count && w.z > 0; ++b) visibility[b] += 4 * pi * std::max(0.0, glm::dot(w, basis[b]));
+            for (std::size_t b = 0; b < basis_count && w.z > 0; ++b) batch.visibility[b] += weight * 4 * pi * std::max(0.0, glm::dot(w, basis[b]));
             return;
         }
-        std::array<std::array<double, sh_count>, channel_count> radiance{};
-        const double side = options.continuation_strata;
-        for (std::uint32_t row = 0; row < options.continuation_strata; ++row) {
-            for (std::uint32_t column = 0; column < options.continuation_strata; ++column) {
-                const double u = (row + random.next()) / side, v = (column + random.next()) / side;
-                follow(*hit, probe, w, u, v, 1 / (side * side), radiance);
+        Radiance radiance;
+        const double side = options_.continuation_strata;
+        for (std::uint32_t row = 0; row < options_.continuation_strata; ++row) {
+            for (std::uint32_t column = 0; column < options_.continuation_strata; ++column) {
+                const double u = (row + walk_.random.next()) / side, v = (column + walk_.random.next()) / side;
+                follow(*hit, w, u, v, 1 / (side * side), radiance);
             }
         }
         for (std::size_t b = 0; b < basis_count; ++b) {
-            const double weight = 4 * std::max(0.0, glm::dot(w, basis[b]));  // 1 / pi over the density 1 / (4 pi)
+            const double share = weight * 4 * std::max(0.0, glm::dot(w, basis[b]));  // 1 / pi over the density 1 / (4 pi)
             for (std::size_t c = 0; c < channel_count; ++c) {
-                for (std::size_t i = 0; i < sh_count; ++i) transfer[c][b][i] += weight * radiance[c][i];
+                for (std::size_t i = 0; i < sh_count; ++i) batch.transfer[c][b][i] += share * radiance.sky[c][i];
+                batch.irradiance[c][b] += share * radiance.lights[static_cast<glm::length_t>(c)];
             }
         }
     }
-};
 
-// Mean and standard error from sums over batches.
-struct Spread {
-    double sum = 0, squares = 0;
-    void add(double v) { sum += v, squares += v * v; }
-    [[nodiscard]] double mean(double n) const { return sum / n; }
-    [[nodiscard]] double error(double n) const { return std::sqrt(std::max(0.0, squares / n - mean(n) * mean(n)) / (n - 1)); }
+    // One sample of what the surface that `arriving` hit sends back along it, times `weight`. The first direction onward
+    // is made of `u` and `v`.
+    void follow(SurfaceHit hit, glm::dvec3 arriving, double u, double v, double weight, Radiance& radiance) {
+        glm::dvec3 throughput(weight), origin = walk_.probe;
+        for (std::uint32_t scattering = 1;; ++scattering) {
+            if (hit.absorbs) return;
+            radiance.lights += throughput * hit.emitted;
+            if (scattering > options_.bounces) return;
+            const glm::dvec3 point = origin + hit.distance_m * arriving;
+            for (const map::Light* light : lights_) {
+                if (const auto incident = incidence(*light, point)) radiance.lights += throughput * walk_.scattered(hit, point, *incident);
+            }
+            const Walk::Step step = Walk::onward(hit, point, u, v);
+            throughput *= step.weight;
+            const auto next = walk_.closest(step.origin, step.direction);
+            if (!next) {
+                if (step.direction.z > 0) add_sky(step.direction, throughput, radiance);  // below the horizon it is black
+                return;
+            }
+            hit = *next;
+            arriving = step.direction;
+            origin = step.origin;
+            u = walk_.random.next();
+            v = walk_.random.next();
+        }
+    }
+
+    static void add_sky(const glm::dvec3& w, const glm::dvec3& throughput, Radiance& radiance) {
+        const std::array<double, sh_count> sh = {y0, y1 * w.y, y1 * w.z, y1 * w.x};
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            for (std::size_t i = 0; i < sh_count; ++i) radiance.sky[c][i] += throughput[static_cast<glm::length_t>(c)] * sh[i];
+        }
+    }
+
+    const Options& options_;
+    Walk walk_;
+    std::vector<const map::Light*> lights_;
 };
 
 }  // namespace
 
 Estimate integrate(const Scene& scene, const glm::dvec3& position, const Options& options) {
-    Integrator integrator{scene, position, options, {std::mt19937_64(options.seed)}};
-    std::array<std::array<std::array<Spread, sh_count>, basis_count>, channel_count> transfer_spread{};
-    std::array<Spread, basis_count> visibility_spread{};
-    const double side = options.strata, rays = side * side, batches = options.batches;
-    for (std::uint32_t batch = 0; batch < options.batches; ++batch) {
-        Transfer transfer{};
-        Visibility visibility{};
-        for (std::uint32_t row = 0; row < options.strata; ++row) {
-            for (std::uint32_t column = 0; column < options.strata; ++column) {
-                const double u = (row + integrator.random.next()) / side, v = (column + integrator.random.next()) / side;
-                integrator.add_first_ray(sphere_direction(u, v), transfer, visibility);
-            }
-        }
+    Integrator integrator(scene, position, options);
+    std::array<std::array<std::array<Spread, sh_count>, basis_count>, channel_count> transfer{};
+    std::array<std::array<Spread, basis_count>, channel_count> irradiance{};
+    std::array<Spread, basis_count> visibility{};
+    for (std::uint32_t n = 0; n < options.batches; ++n) {
+        const Batch batch = integrator.run_batch();
         for (std::size_t b = 0; b < basis_count; ++b) {
             const double open = pi * (1 + basis[b].z) / 2;  // int_up max(0, w.b) dw
-            visibility_spread[b].add(open > 1e-9 ? visibility[b] / rays / open : 0);
+            visibility[b].add(open > 1e-9 ? batch.visibility[b] / open : 0);
             for (std::size_t c = 0; c < channel_count; ++c) {
-                for (std::size_t i = 0; i < sh_count; ++i) transfer_spread[c][b][i].add(transfer[c][b][i] / rays);
+                irradiance[c][b].add(batch.irradiance[c][b]);
+                for (std::size_t i = 0; i < sh_count; ++i) transfer[c][b][i].add(batch.transfer[c][b][i]);
             }
         }
     }
     Estimate estimate;
+    const double batches = options.batches;
     for (std::size_t b = 0; b < basis_count; ++b) {
-        estimate.sky_visibility[b] = visibility_spread[b].mean(batches);
-        estimate.visibility_error[b] = visibility_spread[b].error(batches);
+        estimate.sky_visibility[b] = visibility[b].mean(batches);
+        estimate.visibility_error[b] = visibility[b].error(batches);
         for (std::size_t c = 0; c < channel_count; ++c) {
+            estimate.static_irradiance[c][b] = irradiance[c][b].mean(batches);
+            estimate.static_error[c][b] = irradiance[c][b].error(batches);
             for (std::size_t i = 0; i < sh_count; ++i) {
-                estimate.transfer[c][b][i] = transfer_spread[c][b][i].mean(batches);
-                estimate.transfer_error[c][b][i] = transfer_spread[c][b][i].error(batches);
+                estimate.transfer[c][b][i] = transfer[c][b][i].mean(batches);
+                estimate.transfer_error[c][b][i] = transfer[c][b][i].error(batches);
             }
         }
     }

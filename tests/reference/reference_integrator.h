@@ -1,5 +1,5 @@
-// Sky visibility and radiance transfer by brute force, written from DESIGN section 2 alone: uniform directions
-// everywhere, double precision, no code of the product's integrator. Slow, and right but for a known noise.
+// Sky visibility, radiance transfer and static irradiance by brute force, written from DESIGN section 2 alone: uniform
+// directions everywhere, double precision, no code of the product's integrator. Slow, and right but for a known noise.
 #pragma once
 
 #include "tests/reference/reference_scene.h"
@@ -23,17 +23,20 @@ inline constexpr double y0 = 0.28209479177387814, y1 = 0.48860251190291992;
 
 using Transfer = std::array<std::array<std::array<double, sh_count>, basis_count>, channel_count>;  // [c][b][i]
 using Visibility = std::array<double, basis_count>;
+using Irradiance = std::array<std::array<double, basis_count>, channel_count>;          // [c][b]: E/pi, W/(sr m2)
 
 struct Estimate {
     Transfer transfer{}, transfer_error{};        // means and their standard errors
     Visibility sky_visibility{}, visibility_error{};
+    Irradiance static_irradiance{}, static_error{};
 };
 
 // Paths are batches x strata^2 x continuation_strata^2. First directions are jittered in strata x strata cells of equal
 // solid angle, and so are the directions that go on from each first hit. Batches are independent; the standard
-// errors are those of the mean over batches.
+// errors are those of the mean over batches. Emission is found by the paths that hit it; all other lights are summed
+// over at each surface, and at the probe itself.
 struct Options {
-    std::uint32_t bounces = 3;      // surfaces a path may touch; the last one sends back sky only
+    std::uint32_t bounces = 3;      // surfaces that may scatter on a path; after the last one it finds sky or emission
     double reach_m = 512;           // farther from the probe is sky, at every bounce
     std::uint32_t batches = 32;     // 2 or more
     std::uint32_t strata = 64;

@@ -2,6 +2,7 @@
 
 #include "bakerd/map/texture.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x3.hpp>
@@ -9,147 +10,167 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace drtv::reference {
 namespace {
 
-constexpr std::uint32_t leaf_size = 3;
-constexpr double albedo_limit = 0.95;  // the product's promise, stated again on purpose
+constexpr double albedo_limit = 0.95;           // the product's promise, stated again on purpose
+constexpr double leaf_transmission = 0.5;       // of the base colour, where a plant's material says nothing
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+Box box_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    Box box;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<glm::length_t>(k);
+        box.low[k] = std::nextafter(static_cast<float>(std::min({a[axis], b[axis], c[axis]})), -infinity);
+        box.high[k] = std::nextafter(static_cast<float>(std::max({a[axis], b[axis], c[axis]})), infinity);
+    }
+    return box;
+}
+
+bool apart(const glm::dvec3& low, const glm::dvec3& high, const Region& region) {
+    return glm::any(glm::lessThan(high, region.low)) || glm::any(glm::greaterThan(low, region.high));
+}
 
 }  // namespace
 
-Scene::Scene(const map::Map& map) : map_(map) {
+Scene::Scene(const map::Map& map, const Region& region) : map_(map) {
     for (const map::Object& object : map.objects) {
-        const glm::dmat4x3 world_from_object(object.world_from_object);
-        // A mirroring turns the winding over; the object space tells the front all the same.
-        const double handedness = glm::determinant(glm::dmat3(world_from_object)) < 0 ? -1.0 : 1.0;
-        for (const map::Primitive& primitive : map.meshes[object.mesh].primitives) {
-            for (const glm::uvec3& t : primitive.triangles) {
-                std::array<glm::dvec3, 3> corners;
-                for (glm::length_t k = 0; k < 3; ++k) corners[static_cast<std::size_t>(k)] = world_from_object * glm::dvec4(glm::dvec3(primitive.positions[t[k]]), 1.0);
-                Triangle triangle;
-                triangle.corner = corners[0];
-                triangle.edge1 = corners[1] - corners[0];
-                triangle.edge2 = corners[2] - corners[0];
-                const glm::dvec3 across = glm::cross(triangle.edge1, triangle.edge2);
-                if (!(glm::length(across) > 0)) continue;
-                triangle.front = glm::normalize(across) * handedness;
-                triangle.primitive = &primitive;
-                triangle.vertices = t;
-                triangle.two_sided = map.materials[primitive.material].double_sided || object.role == map::Role::vegetation;
-                triangles_.push_back(triangle);
+        if (!apart(glm::dvec3(object.bounds.low) - 0.01, glm::dvec3(object.bounds.high) + 0.01, region)) add_object(object, region);
+    }
+    std::vector<Box> boxes;
+    boxes.reserve(triangles_.size());
+    for (const Triangle& t : triangles_) boxes.push_back(box_of(t.corner, t.corner + t.edge1, t.corner + t.edge2));
+    std::vector<std::uint32_t> order;
+    bvh_.emplace(boxes, order);
+    std::vector<Triangle> sorted;
+    sorted.reserve(order.size());
+    for (const std::uint32_t n : order) sorted.push_back(triangles_[n]);
+    triangles_ = std::move(sorted);
+}
+
+void Scene::add_object(const map::Object& object, const Region& region) {
+    const glm::dmat4x3 world_from_object(object.world_from_object);
+    // A mirroring turns the winding over; the object space tells the front all the same.
+    const bool mirrored = glm::determinant(glm::dmat3(world_from_object)) < 0;
+    for (const map::Primitive& primitive : map_.meshes[object.mesh].primitives) {
+        const map::Material& material = map_.materials[primitive.material];
+        const auto worn = static_cast<std::uint32_t>(worn_.size());
+        worn_.push_back({&primitive, &material, object.role == map::Role::vegetation, mirrored, material.alpha_mode == map::AlphaMode::opaque});
+        for (std::size_t n = 0; n < primitive.triangles.size(); ++n) {
+            std::array<glm::dvec3, 3> corner;
+            for (std::size_t k = 0; k < 3; ++k) {
+                corner[k] = world_from_object * glm::dvec4(glm::dvec3(primitive.positions[primitive.triangles[n][static_cast<glm::length_t>(k)]]), 1.0);
             }
+            if (apart(glm::min(corner[0], glm::min(corner[1], corner[2])), glm::max(corner[0], glm::max(corner[1], corner[2])), region)) continue;
+            const Triangle triangle{corner[0], corner[1] - corner[0], corner[2] - corner[0], worn, static_cast<std::uint32_t>(n)};
+            if (glm::length(glm::cross(triangle.edge1, triangle.edge2)) > 0) triangles_.push_back(triangle);
         }
     }
-    nodes_.push_back({{}, {}, 0, static_cast<std::uint32_t>(triangles_.size())});
-    if (!triangles_.empty()) split(0);
 }
 
-// Halves the triangles at the median centroid along the node's longest side.
-void Scene::split(std::size_t node) {
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    const std::uint32_t first = nodes_[node].first, count = nodes_[node].count;
-    for (std::uint32_t n = first; n < first + count; ++n) {
-        const Triangle& t = triangles_[n];
-        for (const glm::dvec3& p : {t.corner, t.corner + t.edge1, t.corner + t.edge2}) {
-            low = glm::min(low, p);
-            high = glm::max(high, p);
-        }
-    }
-    nodes_[node].low = low - 1e-6;
-    nodes_[node].high = high + 1e-6;
-    if (count <= leaf_size) return;
-    const glm::dvec3 size = high - low;
-    const glm::length_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::uint32_t half = count / 2;
-    const auto begin = triangles_.begin() + first;
-    std::nth_element(begin, begin + half, begin + count, [&](const Triangle& a, const Triangle& b) {
-        return 3 * a.corner[axis] + a.edge1[axis] + a.edge2[axis] < 3 * b.corner[axis] + b.edge1[axis] + b.edge2[axis];
-    });
-    const std::size_t child = nodes_.size();
-    nodes_[node].first = static_cast<std::uint32_t>(child);
-    nodes_[node].count = 0;
-    nodes_.push_back({{}, {}, first, half});
-    nodes_.push_back({{}, {}, first + half, count - half});
-    split(child);
-    split(child + 1);
+// Moller and Trumbore, "Fast, Minimum Storage Ray-Triangle Intersection", 1997.
+std::optional<Scene::Crossing> Scene::cross(const Triangle& t, const glm::dvec3& origin, const glm::dvec3& direction, double far_m) {
+    const glm::dvec3 p = glm::cross(direction, t.edge2);
+    const double determinant = glm::dot(t.edge1, p);
+    if (determinant == 0) return std::nullopt;
+    const double inverse = 1 / determinant;
+    const glm::dvec3 s = origin - t.corner;
+    const double u = glm::dot(s, p) * inverse;
+    if (!(u >= 0 && u <= 1)) return std::nullopt;
+    const glm::dvec3 q = glm::cross(s, t.edge1);
+    const double v = glm::dot(direction, q) * inverse;
+    if (!(v >= 0 && u + v <= 1)) return std::nullopt;
+    const double distance = glm::dot(t.edge2, q) * inverse;
+    if (!(distance > 0 && distance < far_m)) return std::nullopt;
+    return Crossing{distance, u, v};
 }
 
-bool Scene::meets(const Node& node, const glm::dvec3& origin, const glm::dvec3& inverse, double far) const {
-    double enter = 0, leave = far;
-    for (glm::length_t k = 0; k < 3; ++k) {
-        const double a = (node.low[k] - origin[k]) * inverse[k], b = (node.high[k] - origin[k]) * inverse[k];
-        enter = std::max(enter, std::min(a, b));
-        leave = std::min(leave, std::max(a, b));
-    }
-    return enter <= leave;
+glm::dvec4 Scene::picture(const map::TextureView& view, const std::vector<glm::vec2>& uvs, const Triangle& triangle, const Crossing& at) const {
+    const glm::uvec3& t = worn_[triangle.worn].primitive->triangles[triangle.number];
+    const glm::dvec3 uv1((1 - at.u - at.v) * glm::dvec2(uvs[t.x]) + at.u * glm::dvec2(uvs[t.y]) + at.v * glm::dvec2(uvs[t.z]), 1.0);
+    const glm::vec2 uv(glm::dot(glm::dvec3(view.u_from_uv), uv1), glm::dot(glm::dvec3(view.v_from_uv), uv1));
+    return glm::dvec4(map::sample(map_.textures[view.texture], uv));
 }
 
-glm::dvec4 Scene::colour(const Triangle& triangle, double u, double v) const {
-    const map::Primitive& primitive = *triangle.primitive;
-    const map::Material& material = map_.materials[primitive.material];
-    const glm::uvec3& at = triangle.vertices;
-    glm::dvec4 result(material.base_colour);
-    if (!primitive.colours.empty()) {
-        result *= (1 - u - v) * glm::dvec4(primitive.colours[at.x]) + u * glm::dvec4(primitive.colours[at.y]) + v * glm::dvec4(primitive.colours[at.z]);
+glm::dvec4 Scene::colour(const Triangle& triangle, const Crossing& at) const {
+    const Worn& worn = worn_[triangle.worn];
+    const auto& colours = worn.primitive->colours;
+    glm::dvec4 result(worn.material->base_colour);
+    if (!colours.empty()) {
+        const glm::uvec3& t = worn.primitive->triangles[triangle.number];
+        result *= (1 - at.u - at.v) * glm::dvec4(colours[t.x]) + at.u * glm::dvec4(colours[t.y]) + at.v * glm::dvec4(colours[t.z]);
     }
-    if (material.texture != map::no_texture) {
-        const glm::dvec2 uv = (1 - u - v) * glm::dvec2(primitive.uvs[at.x]) + u * glm::dvec2(primitive.uvs[at.y]) + v * glm::dvec2(primitive.uvs[at.z]);
-        const glm::dvec3 row(uv, 1.0);
-        const glm::vec2 transformed(glm::dot(glm::dvec3(material.texture_u_from_uv), row), glm::dot(glm::dvec3(material.texture_v_from_uv), row));
-        result *= glm::dvec4(map::sample(map_.textures[material.texture], transformed));
-    }
+    if (worn.material->base_texture.present()) result *= picture(worn.material->base_texture, worn.primitive->uvs, triangle, at);
     return result;
 }
 
-std::optional<SurfaceHit> Scene::closest(const glm::dvec3& origin, const glm::dvec3& direction) const {
-    double best = std::numeric_limits<double>::infinity(), best_u = 0, best_v = 0;
-    const Triangle* found = nullptr;
-    const glm::dvec3 inverse(1 / direction.x, 1 / direction.y, 1 / direction.z);
-    std::array<std::uint32_t, 64> stack;
-    std::size_t depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-        const Node& node = nodes_[stack[--depth]];
-        if (!meets(node, origin, inverse, best)) continue;
-        if (node.count == 0) {
-            const Node &a = nodes_[node.first], &b = nodes_[node.first + 1];
-            const bool a_nearer = glm::dot(a.low + a.high - b.low - b.high, direction) < 0;
-            stack[depth++] = a_nearer ? node.first + 1 : node.first;
-            stack[depth++] = a_nearer ? node.first : node.first + 1;
-            continue;
-        }
-        for (std::uint32_t n = node.first; n < node.first + node.count; ++n) {
-            // Moller and Trumbore, "Fast, Minimum Storage Ray-Triangle Intersection", 1997.
-            const Triangle& t = triangles_[n];
-            const glm::dvec3 p = glm::cross(direction, t.edge2);
-            const double determinant = glm::dot(t.edge1, p);
-            if (determinant == 0) continue;
-            const glm::dvec3 s = origin - t.corner;
-            const double u = glm::dot(s, p) / determinant;
-            if (u < 0 || u > 1) continue;
-            const glm::dvec3 q = glm::cross(s, t.edge1);
-            const double v = glm::dot(direction, q) / determinant;
-            if (v < 0 || u + v > 1) continue;
-            const double distance = glm::dot(t.edge2, q) / determinant;
-            if (!(distance > 0) || distance >= best) continue;
-            const map::Material& material = map_.materials[t.primitive->material];
-            if (material.masked && colour(t, u, v).w < static_cast<double>(material.alpha_cutoff)) continue;
-            best = distance;
-            best_u = u;
-            best_v = v;
-            found = &t;
-        }
-    }
-    if (found == nullptr) return std::nullopt;
-    const bool front = glm::dot(found->front, direction) < 0;
+bool Scene::is_there(const Triangle& triangle, const Crossing& at, Random& random) const {
+    const Worn& worn = worn_[triangle.worn];
+    if (worn.always_there) return true;
+    const double alpha = colour(triangle, at).w;
+    if (worn.material->alpha_mode == map::AlphaMode::mask) return alpha >= static_cast<double>(worn.material->alpha_cutoff);
+    return random.next() < alpha;
+}
+
+SurfaceHit Scene::surface(const Triangle& triangle, const Crossing& at, const glm::dvec3& direction) const {
+    const Worn& worn = worn_[triangle.worn];
+    const map::Material& material = *worn.material;
+    const glm::dvec3 front = glm::normalize(glm::cross(triangle.edge1, triangle.edge2)) * (worn.mirrored ? -1.0 : 1.0);
+    const bool on_front = glm::dot(front, direction) < 0;
     SurfaceHit hit;
-    hit.distance_m = best;
-    hit.normal = front ? found->front : -found->front;
-    hit.albedo = glm::clamp(glm::dvec3(colour(*found, best_u, best_v)), 0.0, albedo_limit);
-    hit.absorbs = !front && !found->two_sided;
+    hit.distance_m = at.distance_m;
+    hit.normal = on_front ? front : -front;
+    if (!on_front && !material.double_sided && !worn.vegetation && !(material.transmission > 0)) {
+        hit.absorbs = true;
+        return hit;
+    }
+    const glm::dvec3 base = glm::clamp(glm::dvec3(colour(triangle, at)), 0.0, albedo_limit);
+    hit.reflected = base;
+    if (material.transmission > 0) {
+        hit.reflected = base * (1 - static_cast<double>(material.transmission));
+        hit.transmitted = glm::dvec3(material.transmission_colour) * static_cast<double>(material.transmission);
+    } else if (worn.vegetation && (material.double_sided || material.alpha_mode != map::AlphaMode::opaque)) {
+        hit.transmitted = base * leaf_transmission;
+    }
+    const glm::dvec3 excess = glm::max(glm::dvec3(1), (hit.reflected + hit.transmitted) / albedo_limit);
+    hit.reflected /= excess;
+    hit.transmitted /= excess;
+    if ((on_front || material.double_sided) && material.emission != glm::vec3(0)) {
+        hit.emitted = glm::dvec3(material.emission) / lumens_per_watt;
+        if (material.emission_texture.present()) hit.emitted *= glm::dvec3(picture(material.emission_texture, worn.primitive->emission_uvs, triangle, at));
+    }
     return hit;
+}
+
+std::optional<SurfaceHit> Scene::closest(const glm::dvec3& origin, const glm::dvec3& direction, Random& random) const {
+    double far = std::numeric_limits<double>::infinity();
+    Crossing best{};
+    const Triangle* found = nullptr;
+    bvh_->walk(origin, direction, far, [&](std::uint32_t first, std::uint32_t count) {
+        for (std::uint32_t n = first; n < first + count; ++n) {
+            const auto crossing = cross(triangles_[n], origin, direction, far);
+            if (!crossing || !is_there(triangles_[n], *crossing, random)) continue;
+            best = *crossing;
+            far = best.distance_m;
+            found = &triangles_[n];
+        }
+        return true;
+    });
+    if (found == nullptr) return std::nullopt;
+    return surface(*found, best, direction);
+}
+
+bool Scene::blocked(const glm::dvec3& origin, const glm::dvec3& direction, double far_m, Random& random) const {
+    bool found = false;
+    bvh_->walk(origin, direction, far_m, [&](std::uint32_t first, std::uint32_t count) {
+        for (std::uint32_t n = first; n < first + count && !found; ++n) {
+            const auto crossing = cross(triangles_[n], origin, direction, far_m);
+            found = crossing && is_there(triangles_[n], *crossing, random);
+        }
+        return !found;
+    });
+    return found;
 }
 
 }  // namespace drtv::reference

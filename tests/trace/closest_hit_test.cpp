@@ -131,10 +131,10 @@ TEST(ClosestHit, StaticBackAbsorbsAndLeavesReflectOnBothSides) {
             EXPECT_TRUE(above->front && !below->front) << "glTF turns the winding of a mirrored node, so that its front stays up";
             EXPECT_EQ(above->normal, glm::vec3(0, 0, 1));
             EXPECT_EQ(below->normal, glm::vec3(0, 0, -1));
-            EXPECT_FALSE(scene->surface(*above).absorbs);
-            EXPECT_EQ(scene->surface(*above).albedo, glm::vec3(0.5, 0.25, 0.125));
-            EXPECT_EQ(scene->surface(*below).absorbs, absorbs) << role;
-            EXPECT_EQ(scene->surface(*below).albedo, absorbs ? glm::vec3(0) : glm::vec3(0.5, 0.25, 0.125)) << role;
+            EXPECT_FALSE(scene->surface(*above, 0).absorbs);
+            EXPECT_EQ(scene->surface(*above, 0).albedo, glm::vec3(0.5, 0.25, 0.125));
+            EXPECT_EQ(scene->surface(*below, 0).absorbs, absorbs) << role;
+            EXPECT_EQ(scene->surface(*below, 0).albedo, absorbs ? glm::vec3(0) : glm::vec3(0.5, 0.25, 0.125)) << role;
         }
     }
 }

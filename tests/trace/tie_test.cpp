@@ -24,7 +24,7 @@ std::vector<Answer> answers(const trace::Scene& scene, const std::vector<Ray>& r
     const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
     for (const Ray& ray : rays) {
         const auto hit = scene.closest(ray);
-        if (hit) result.emplace_back(true, bits(hit->distance_m), bits(hit->u), bits(hit->v), hit->front, bits(hit->normal.x), bits(hit->normal.y), bits(scene.surface(*hit).albedo.x), scene.object_of(*hit).digest);
+        if (hit) result.emplace_back(true, bits(hit->distance_m), bits(hit->u), bits(hit->v), hit->front, bits(hit->normal.x), bits(hit->normal.y), bits(scene.surface(*hit, 0).albedo.x), scene.object_of(*hit).digest);
         else result.emplace_back();
     }
     return result;
@@ -135,6 +135,36 @@ TEST(Ties, SmallerDigestWins) {
         const auto hit = scene->closest({{x, 1.5f, 2}, {0, 0, -1}, 9});
         ASSERT_TRUE(hit);
         EXPECT_EQ(scene->object_of(*hit).digest, map->objects[0].digest);
+    }
+}
+
+// A thing of two one-sided skins in one place shows its front to both sides, whichever way it was modelled first.
+TEST(Ties, TwinTrianglesHaveTwoFronts) {
+    for (const bool up_first : {true, false}) {
+        const Shape up = level_square(5, 1.25f);
+        Shape both = up;
+        both.indices.clear();
+        for (std::size_t t = 0; t < up.indices.size(); t += 3) {
+            const std::uint32_t a = up.indices[t], b = up.indices[t + 1], c = up.indices[t + 2];
+            if (up_first) both.indices.insert(both.indices.end(), {a, b, c, c, b, a});
+            else both.indices.insert(both.indices.end(), {b, a, c, b, c, a});
+        }
+        Thing thing = thing_of(both, glm::vec3(0.5f));
+        std::mt19937 random(9);
+        thing.world_from_shape = random_placement(random, 20, false);
+        const auto scene = scene_of(std::vector<Thing>{thing});
+        int fronts = 0;
+        for (int n = 0; n < 4000; ++n) {
+            const glm::dvec3 target(between(random, -4, 4), between(random, -4, 4), 1.25), from(between(random, -9, 9), between(random, -9, 9), between(random, -9, 9));
+            const glm::vec3 origin(thing.world_from_shape * glm::dvec4(from, 1)), to(thing.world_from_shape * glm::dvec4(target, 1));
+            const auto hit = scene->closest({origin, glm::normalize(to - origin), 100});
+            ASSERT_TRUE(hit);
+            EXPECT_TRUE(hit->front);
+            EXPECT_FALSE(scene->surface(*hit, 0).absorbs);
+            EXPECT_NEAR(scene->surface(*hit, 0).albedo.x, 0.5f, 1e-6f);
+            fronts += hit->front ? 1 : 0;
+        }
+        EXPECT_EQ(fronts, 4000);
     }
 }
 

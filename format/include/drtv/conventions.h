@@ -2,7 +2,9 @@
 // format/SPEC.md, section 2; every constant here stands there too.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -40,6 +42,8 @@ inline constexpr float sh_y1 = 0.488603f;
 inline constexpr std::size_t max_probes = 255;  // a sector's; index 255 means "no probe"
 inline constexpr std::uint8_t no_probe = 255;
 
+inline constexpr std::size_t max_local_sources = 128;  // that one probe takes light from
+
 inline constexpr std::size_t grid_size = 16;  // cells along each axis
 inline constexpr std::size_t grid_cell_count = grid_size * grid_size * grid_size;
 
@@ -51,6 +55,14 @@ inline constexpr float sky_visibility_scale = 1.0f;
 // Bounds of any passive scene's transfer (DESIGN section 2): 1/(2 sqrt pi) for i = 0 and sqrt(3/(4 pi)) else.
 inline constexpr float transfer_bound_y0 = 0.2821f;
 inline constexpr float transfer_bound_y1 = 0.4887f;
+
+// A scale that a file gives as an exponent: 2^exponent, exact, for an exponent of -126 to 126. One beyond counts as the
+// nearest, so that no file makes a scale that is not a normal float.
+[[nodiscard]] constexpr float scale_of_exponent(int exponent) {
+    constexpr int limit = 126, float_bias = 127, float_mantissa_bits = 23;
+    const auto biased = static_cast<std::uint32_t>(std::clamp(exponent, -limit, limit) + float_bias);
+    return std::bit_cast<float>(biased << float_mantissa_bits);
+}
 
 [[nodiscard]] constexpr float decode_fixed(std::int16_t q, float scale) {
     return static_cast<float>(q) / fixed_point_max * scale;

@@ -1,5 +1,5 @@
 // Reading a sector file from untrusted bytes. Never throws on bad input, never reads outside `bytes`, allocates
-// no more than a sector's own size (at most a few hundred KiB).
+// no more than a sector's own size (at most a few MiB, with the most local transfer there can be).
 #pragma once
 
 #include <drtv/sector.h>
@@ -15,7 +15,7 @@ namespace drtv {
 enum class ReadError : std::uint8_t {
     none,
     not_a_sector_file,    // too short, or another magic
-    unsupported_version,  // another major version, or a known section of another version
+    unsupported_version,  // another major version, or a required section of another version
     truncated,            // the file is shorter than it says
     trailing_bytes,       // the file is longer than it says
     bad_header,           // a header field breaks its rule
@@ -40,13 +40,16 @@ enum class SectionKind : std::uint16_t {
     transfer = 4,
     grid = 5,
     statistics = 6,
+    static_irradiance = 7,  // this and the following: format 1.1, optional
+    local_transfer = 8,
+    convergence = 9,
 };
 
 enum class Codec : std::uint8_t { raw = 0, zstd = 1 };
 
 // One line of the table of sections, as it stands in the file.
 struct SectionEntry {
-    std::uint16_t kind = 0;  // a SectionKind, or one of a later minor version, which is skipped
+    std::uint16_t kind = 0;  // a SectionKind, or one that this reader skips
     std::uint16_t version = 0;
     std::uint8_t codec = 0;
     std::uint32_t offset = 0;       // from the start of the file, a multiple of 16

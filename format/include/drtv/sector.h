@@ -5,6 +5,7 @@
 #include <drtv/conventions.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -63,6 +64,64 @@ struct Statistics {
     bool operator==(const Statistics&) const = default;
 };
 
+// [channel r, g, b][basis direction or SH coefficient], fixed point; the scale stands beside it as an exponent.
+using LightCodes = std::array<std::array<std::int16_t, 4>, channel_count>;
+
+// E/pi around each basis direction from the map's own lights, direct and bounced: codes[c][b], scale 2^exponent.
+struct StaticIrradiance {
+    LightCodes codes{};
+    std::int8_t exponent = 0;
+
+    bool operator==(const StaticIrradiance&) const = default;
+};
+
+// A probe whose place a local light may have: probe `probe` of the sector (i + di, j + dj), di and dj in -1..1.
+struct LocalSource {
+    std::int8_t di = 0, dj = 0;
+    std::uint8_t probe = 0;
+    std::int8_t exponent = 0;  // its part of the scale of its pairs
+
+    bool operator==(const LocalSource&) const = default;
+};
+
+// One probe's row of the matrix receiver x source, which is sparse: which pairs there are and where they begin.
+struct LocalReceiver {
+    std::uint32_t first_pair = 0;
+    std::int8_t exponent = 0;               // its part of the scale of its pairs
+    std::array<std::uint8_t, 32> sources{};  // bit s & 7 of byte s >> 3: source s has a pair
+
+    bool operator==(const LocalReceiver&) const = default;
+};
+
+// Whether the receiver has a pair with source `s`. REQUIRES: s < 256.
+[[nodiscard]] constexpr bool has_pair(const LocalReceiver& receiver, std::size_t s) {
+    return (receiver.sources[s >> 3] >> (s & 7) & 1) != 0;
+}
+
+// Light that a local light at a source's place sends to a receiver by bounce (SPEC.md, section 5.8). Pair n of receiver
+// p and source s: R_c[i] = 2^(receiver exponent + source exponent) * code / 32767.
+struct LocalTransfer {
+    std::vector<LocalSource> sources;      // at most 255
+    std::vector<LocalReceiver> receivers;  // one a probe
+    std::vector<LightCodes> pairs;         // [c][i]; a receiver's in the order of its sources
+
+    bool operator==(const LocalTransfer&) const = default;
+};
+
+// What was asked and what was reached, when it was measured.
+struct Convergence {
+    // Relative standard error of E/pi relit by a sky of radiance 1 (SPEC.md, section 5.9).
+    float error_asked = 0;                                  // 0: a fixed number of paths
+    float error_median = 0, error_p95 = 0, error_max = 0;   // over the sector's probes
+    std::uint32_t paths_least = 0, paths_most = 0;          // a probe
+    std::uint32_t local_bounces = 0;                        // 0 where the file has no local transfer
+    std::uint32_t local_rays = 0;                           // traced from each source; 0 likewise
+    std::uint64_t static_rays = 0;                          // for static irradiance, shadow rays included
+    std::uint64_t local_transfer_rays = 0;
+
+    bool operator==(const Convergence&) const = default;
+};
+
 struct Sector {
     std::int32_t i = 0, j = 0;        // world square [64 i, 64 i + 64) x [64 j, 64 j + 64)
     std::int32_t z_origin_units = 0;  // height of position z = 0, 2^-10 m
@@ -71,6 +130,10 @@ struct Sector {
     Grid grid;
     BakeRecord bake;
     Statistics statistics;
+    // Of format 1.1, each optional:
+    std::vector<StaticIrradiance> static_irradiance;  // empty or one a probe
+    std::optional<LocalTransfer> local_transfer;
+    std::optional<Convergence> convergence;
 
     bool operator==(const Sector&) const = default;
 };

@@ -13,9 +13,10 @@ struct WriteOptions {
     Codec codec = Codec::raw;  // zstd is used for a section only where it makes it smaller
 };
 
-// The bytes of the file. Values are written as they are: what is not a valid sector gives a file that is not valid.
+// The bytes of the file: of version 1.1 when the sector has one of the optional sections, else of version 1.0. Values
+// are written as they are: what is not a valid sector gives a file that is not valid.
 // REQUIRES: at most 255 probes, |i| and |j| <= max_sector_coordinate, |z_origin_units| <= max_z_origin_units,
-// z_shift <= max_z_shift.
+// z_shift <= max_z_shift; static irradiance empty or one a probe; local receivers one a probe, at most 255 local sources.
 [[nodiscard]] std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions& options = {});
 
 }  // namespace drtv

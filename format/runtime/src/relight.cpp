@@ -39,6 +39,13 @@ BasisColours relight(const Probe& probe, const DistantLight& sky, const DistantL
     return colours;
 }
 
+void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light) {
+    const float scale = scale_of_exponent(light.exponent);
+    for (std::size_t b = 0; b < basis_count; ++b) {
+        for (std::size_t c = 0; c < channel_count; ++c) colours[b][c] += decode_fixed(light.codes[c][b], scale);
+    }
+}
+
 Float3 shade_ambient(const BasisColours& colours, const Float3& normal) {
     Float3 ambient{};
     for (std::size_t b = 0; b < basis_count; ++b) {

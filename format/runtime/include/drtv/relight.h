@@ -23,6 +23,9 @@ using BasisColours = std::array<Float3, basis_count>;
 // Bounce of sky and sun plus the direct sky weighted by visibility (s28-s29).
 [[nodiscard]] BasisColours relight(const Probe& probe, const DistantLight& sky, const DistantLight& sun);
 
+// Adds the light of the map's own lights, which no time of day changes.
+void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light);
+
 // Ambient at a unit normal by the basis weights of the shader (s43-s44).
 [[nodiscard]] Float3 shade_ambient(const BasisColours& colours, const Float3& normal);
 

@@ -1,0 +1,40 @@
+// Local radiance transfer (DESIGN section 2; s22-s23, s30-s31; Kristensen et al. 2005): what the bounce of a white
+// point light at each source brings to each probe.
+#pragma once
+
+#include "bakerd/trace/scene.h"
+
+#include <drtv/conventions.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace drtv::bake {
+
+// Around a light the inverse square stops to grow at this distance, so that a lamp at a wall does not burn it out.
+inline constexpr float local_least_distance_m = 0.5f;
+
+struct LocalSettings {
+    std::uint32_t bounces = 2;  // surface bounces, at least 1
+    std::uint32_t rays = 64;    // traced from each source
+    float reach_m = 512;        // of a receiver: surfaces and sources beyond it do not count
+};
+
+// SH coefficients [channel][i] of E/pi as a function of the normal, for a light of 1 W/sr.
+using LocalCoefficients = std::array<std::array<float, sh_count>, channel_count>;
+
+struct LocalLight {
+    std::size_t source_count = 0;
+    std::vector<LocalCoefficients> pairs;  // [receiver * source_count + source]
+    std::uint64_t rays = 0;                // of paths and shadows
+
+    [[nodiscard]] const LocalCoefficients& at(std::size_t receiver, std::size_t source) const { return pairs[receiver * source_count + source]; }
+};
+
+// Positions in units of 2^-10 m; the first `receiver_count` sources are the receivers. A pure function of the triangles
+// within reach of them and of the arguments. Runs on the calling thread's TBB arena; the same numbers on any threads.
+[[nodiscard]] LocalLight integrate_local(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const LocalSettings& settings);
+
+}  // namespace drtv::bake

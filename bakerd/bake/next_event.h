@@ -1,0 +1,56 @@
+// Light that comes straight from a static light to a point: punctual lights, suns, points of emissive surfaces.
+#pragma once
+
+#include "bakerd/bake/lights.h"
+#include "bakerd/trace/scene.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace drtv::bake {
+
+// Irradiance of a surface that faces `direction`; or for `density` > 0 radiance along it, drawn with that density.
+struct Incident {
+    glm::vec3 direction{};
+    glm::vec3 light{};      // already divided by the probability of the draw
+    float distance_m = 0;   // of the light
+    float density = 0;      // per steradian with which next event draws this direction; 0: no path could find it
+};
+
+// Of one probe: all lights within its reach, and shadows inside it.
+class NextEvent {
+  public:
+    NextEvent(const trace::Scene& scene, const StaticLights& lights, const glm::vec3& probe, float reach_m)
+        : scene_(scene), lights_(lights), tree_(lights, probe, reach_m), probe_(probe), reach_m_(reach_m) {}
+
+    [[nodiscard]] bool idle() const { return tree_.empty() && lights_.suns().empty(); }
+    [[nodiscard]] bool has_drawn_lights() const { return !tree_.empty(); }
+    [[nodiscard]] bool has_emissive() const { return tree_.has_emissive(); }
+    [[nodiscard]] std::span<const PointLight* const> points() const { return tree_.points(); }
+    [[nodiscard]] std::span<const Sun> suns() const { return lights_.suns(); }
+
+    [[nodiscard]] Incident towards(const PointLight& light, const glm::vec3& from) const;
+    [[nodiscard]] Incident towards(const Sun& sun, const glm::vec3& from) const;
+    // At most what drawn lights send a surface at the point, W/m2.
+    [[nodiscard]] float bound(const glm::vec3& point) const { return tree_.bound(point); }
+    // One light of the tree by the three numbers; nothing where the draw sends no light.
+    [[nodiscard]] std::optional<Incident> draw(const glm::vec3& from, const std::array<double, 3>& u) const;
+
+    // Radiance of an emissive surface that a path from `from` has hit, with the density of `draw` for its direction.
+    [[nodiscard]] float density_of(const glm::vec3& from, const glm::vec3& direction, const trace::Hit& hit) const;
+
+    // The ray on which nothing may lie, from `start`, a free point on the right side.
+    [[nodiscard]] static trace::Ray shadow_ray(const glm::vec3& start, const Incident& incident);
+
+  private:
+    const trace::Scene& scene_;
+    const StaticLights& lights_;
+    const LightTree tree_;
+    const glm::vec3 probe_;
+    const float reach_m_;
+};
+
+}  // namespace drtv::bake

@@ -1,0 +1,182 @@
+#include "bakerd/trace/triangle_set.h"
+
+#include "bakerd/trace/query.h"
+#include "bakerd/trace/surface.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <numeric>
+#include <optional>
+#include <tuple>
+
+namespace drtv::trace {
+namespace {
+
+bool lets_through(const RTCFilterFunctionNArguments& args) {
+    const auto& set = *static_cast<const TriangleSet*>(args.geometryUserPtr);
+    if (!set.mixed) return false;
+    return !is_there(*set.map, *set.primitive, set.triangle_of(RTCHitN_primID(args.hit, 1, 0)), RTCHitN_u(args.hit, 1, 0), RTCHitN_v(args.hit, 1, 0));
+}
+
+// Keeps the closest hit, and of several at the same distance the one of the smallest id: the order in which the BVH
+// offers them does not matter. The limit is left a little behind the hit, because Embree compares undivided
+// distances and could otherwise drop an equal one by rounding.
+void intersect_filter(const RTCFilterFunctionNArguments* args) {
+    assert(args->N == 1);
+    if (args->valid[0] != -1) return;
+    auto& query = *reinterpret_cast<Query*>(args->context);
+    float& limit = RTCRayN_tfar(args->ray, 1, 0);
+    const float distance = limit;
+    TriangleId id{RTCHitN_instID(args->hit, 1, 0, 0), RTCHitN_geomID(args->hit, 1, 0), RTCHitN_primID(args->hit, 1, 0)};
+    const auto& set = *static_cast<const TriangleSet*>(args->geometryUserPtr);
+    if (id.instance == RTC_INVALID_GEOMETRY_ID) id.instance = set.instance;
+    const bool farther = distance > query.best_distance || (distance == query.best_distance && query.best < id);
+    if (farther || lets_through(*args)) {
+        args->valid[0] = 0;
+        return;
+    }
+    if (query.crossings != nullptr) [[unlikely]] {
+        const float facing = RTCRayN_dir_x(args->ray, 1, 0) * RTCHitN_Ng_x(args->hit, 1, 0) + RTCRayN_dir_y(args->ray, 1, 0) * RTCHitN_Ng_y(args->hit, 1, 0) +
+                             RTCRayN_dir_z(args->ray, 1, 0) * RTCHitN_Ng_z(args->hit, 1, 0);
+        query.crossings->push_back({distance, id, set.mirrored ? -facing : facing});
+        args->valid[0] = 0;
+        return;
+    }
+    query.best_distance = distance;
+    query.best = id;
+    limit = distance * (1 + 0x1p-20f);
+}
+
+void occluded_filter(const RTCFilterFunctionNArguments* args) {
+    assert(args->N == 1);
+    if (args->valid[0] == -1 && lets_through(*args)) args->valid[0] = 0;
+}
+
+std::uint64_t position_hash(const glm::vec3& p) {
+    std::uint64_t hash = 0;
+    for (glm::length_t k = 0; k < 3; ++k) hash = (hash ^ std::bit_cast<std::uint32_t>(p[k])) * 0x9E3779B97F4A7C15u;
+    return hash ^ hash >> 29;
+}
+
+struct Corners {
+    std::uint64_t hash;  // of the corners in any order
+    std::uint32_t set, triangle;
+    std::array<glm::vec3, 3> at;
+};
+
+// The corner of `b` at which it is `a` turned round; nothing where it is not.
+std::optional<std::uint8_t> turned_at(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b) {
+    for (std::uint8_t k = 0; k < 3; ++k) {
+        if (a[0] == b[k] && a[1] == b[(k + 2u) % 3] && a[2] == b[(k + 1u) % 3]) return k;
+    }
+    return std::nullopt;
+}
+
+void find_twins(std::vector<std::unique_ptr<TriangleSet>>& sets) {
+    std::vector<Corners> all;
+    for (std::uint32_t s = 0; s < sets.size(); ++s) {
+        const TriangleSet& set = *sets[s];
+        if (set.material->double_sided || set.material->transmission > 0) continue;
+        for (std::uint32_t n = 0; n < set.size(); ++n) {
+            const glm::uvec3& t = set.primitive->triangles[set.triangle_of(n)];
+            const std::vector<glm::vec3>& p = set.primitive->positions;
+            all.push_back({position_hash(p[t.x]) + position_hash(p[t.y]) + position_hash(p[t.z]), s, n, {p[t.x], p[t.y], p[t.z]}});
+        }
+    }
+    // Of several, the first in the order of the content.
+    std::ranges::sort(all, {}, [](const Corners& c) { return std::tuple(c.hash, c.set, c.triangle); });
+    for (std::size_t first = 0, end = 0; first < all.size(); first = end) {
+        while (end < all.size() && all[end].hash == all[first].hash) ++end;
+        for (std::size_t a = first; end - first > 1 && a < end; ++a) {
+            for (std::size_t b = first; b < end; ++b) {
+                const std::optional<std::uint8_t> corner = turned_at(all[a].at, all[b].at);
+                if (!corner) continue;
+                TriangleSet& set = *sets[all[a].set];
+                const TriangleSet& other = *sets[all[b].set];
+                set.twins.resize(set.size());
+                set.twins[all[a].triangle] = {other.primitive_index, other.triangle_of(all[b].triangle), *corner};
+                break;
+            }
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map, const map::Mesh& mesh, const WantedTriangle& wanted) {
+    std::vector<std::unique_ptr<TriangleSet>> sets;
+    for (std::uint32_t n = 0; n < mesh.primitives.size(); ++n) {
+        const map::Primitive& primitive = mesh.primitives[n];
+        TriangleSet whole;
+        whole.map = &map;
+        whole.primitive = &primitive;
+        whole.material = &map.materials[primitive.material];
+        whole.primitive_index = n;
+        TriangleSet mixed = whole;
+        mixed.mixed = true;
+        const auto count = static_cast<std::uint32_t>(primitive.triangles.size());
+        if (whole.material->alpha_mode == map::AlphaMode::opaque && !wanted) {
+            sets.push_back(std::make_unique<TriangleSet>(std::move(whole)));
+            continue;
+        }
+        for (std::uint32_t t = 0; t < count; ++t) {
+            if (wanted && !wanted(primitive, primitive.triangles[t])) continue;
+            const Presence presence = presence_of(map, primitive, t);
+            if (presence == Presence::whole) whole.triangles.push_back(t);
+            else if (presence == Presence::mixed) mixed.triangles.push_back(t);
+        }
+        for (TriangleSet* set : {&whole, &mixed}) {
+            if (!set->triangles.empty()) sets.push_back(std::make_unique<TriangleSet>(std::move(*set)));
+        }
+    }
+    find_twins(sets);
+    return sets;
+}
+
+void attach(RTCDeviceTy* device, RTCSceneTy* scene, TriangleSet& set, std::uint32_t id, const glm::mat4x3& scene_from_object) {
+    const map::Primitive& primitive = *set.primitive;
+    const auto count = static_cast<std::uint32_t>(set.size());
+    // Corners stay shared: the robust test gives an edge one sign for both its triangles only where their vertices are the
+    // same. Those that the set does not use are left out.
+    std::vector<std::uint32_t> used;
+    if (!set.triangles.empty()) {
+        std::vector<bool> marked(primitive.positions.size(), false);
+        for (const std::uint32_t triangle : set.triangles) {
+            for (glm::length_t k = 0; k < 3; ++k) marked[primitive.triangles[triangle][k]] = true;
+        }
+        for (std::uint32_t n = 0; n < marked.size(); ++n) {
+            if (marked[n]) used.push_back(n);
+        }
+    } else {
+        used.resize(primitive.positions.size());
+        std::iota(used.begin(), used.end(), 0u);
+    }
+    std::vector<std::uint32_t> number(primitive.positions.size());
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Embree's own buffers, because it reads some bytes past the last vertex.
+    auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), used.size()));
+    auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), count));
+    const glm::dmat4x3 transform(scene_from_object);
+    const bool moved = scene_from_object != glm::mat4x3(1);
+    for (std::uint32_t n = 0; n < used.size(); ++n) {
+        const glm::vec3& position = primitive.positions[used[n]];
+        vertices[n] = moved ? glm::vec3(transform * glm::dvec4(position, 1)) : position;
+        number[used[n]] = n;
+    }
+    for (std::uint32_t n = 0; n < count; ++n) {
+        const glm::uvec3& t = primitive.triangles[set.triangle_of(n)];
+        indices[n] = {number[t.x], number[t.y], number[t.z]};
+    }
+    rtcSetGeometryUserData(geometry, &set);
+    rtcSetGeometryIntersectFilterFunction(geometry, intersect_filter);
+    if (set.mixed) rtcSetGeometryOccludedFilterFunction(geometry, occluded_filter);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+}
+
+}  // namespace drtv::trace

@@ -1,0 +1,150 @@
+// Header and table of sections: everything that holds before a section is looked into.
+#include <drtv/read.h>
+
+#include "bytes.h"
+#include "checksum.h"
+#include "decode_section.h"
+#include "layout.h"
+
+#include <cstdlib>
+
+namespace drtv {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+SectionEntry load_entry(Bytes file, std::size_t at) {
+    namespace e = layout::entry;
+    return {load_le<std::uint16_t>(file, at + e::kind),      load_le<std::uint16_t>(file, at + e::version),
+            file[at + e::codec],                              load_le<std::uint32_t>(file, at + e::offset),
+            load_le<std::uint32_t>(file, at + e::stored_bytes), load_le<std::uint32_t>(file, at + e::raw_bytes),
+            load_le<std::uint64_t>(file, at + e::checksum)};
+}
+
+ReadStatus check_header(Bytes file, std::size_t& section_count) {
+    namespace h = layout::header;
+    if (file.size() < 4 || load_le<std::uint32_t>(file, h::magic) != layout::magic) {
+        return fail(ReadError::not_a_sector_file, 0, "not a drtv sector file: it does not start with \"DRTV\"");
+    }
+    // Magic and version come first and stay so in every version, whatever the length of its header.
+    if (file.size() >= h::file_bytes && load_le<std::uint16_t>(file, h::major) != layout::major_version) {
+        return fail(ReadError::unsupported_version, h::major,
+                    "format version " + std::to_string(load_le<std::uint16_t>(file, h::major)) + "." +
+                        std::to_string(load_le<std::uint16_t>(file, h::minor)) + " is not supported: this reader knows version 1");
+    }
+    if (file.size() < layout::header_bytes) {
+        return fail(ReadError::truncated, file.size(), "the header needs 64 bytes, the file has " + std::to_string(file.size()));
+    }
+    const auto file_bytes = load_le<std::uint32_t>(file, h::file_bytes);
+    if (file.size() < file_bytes) {
+        return fail(ReadError::truncated, file.size(),
+                    "the header says " + std::to_string(file_bytes) + " bytes, the file has " + std::to_string(file.size()));
+    }
+    if (file.size() > file_bytes) {
+        return fail(ReadError::trailing_bytes, file_bytes,
+                    "the header says " + std::to_string(file_bytes) + " bytes, the file has " + std::to_string(file.size()));
+    }
+    section_count = load_le<std::uint32_t>(file, h::section_count);
+    if (section_count > layout::max_sections ||
+        layout::header_bytes + section_count * layout::entry_bytes > file.size()) {
+        return fail(ReadError::bad_header, h::section_count,
+                    "the header says " + std::to_string(section_count) + " sections, which do not fit the file or the limit of 64");
+    }
+    std::vector<std::uint8_t> covered(file.begin(), file.begin() + h::checksum);
+    const Bytes table = file.subspan(layout::header_bytes, section_count * layout::entry_bytes);
+    covered.insert(covered.end(), table.begin(), table.end());
+    if (xxh64(covered) != load_le<std::uint64_t>(file, h::checksum)) {
+        return fail(ReadError::checksum_mismatch, h::checksum, "the header's checksum does not match header and table");
+    }
+    const auto i = load_i32(file, h::sector_i), j = load_i32(file, h::sector_j);
+    if (std::abs(std::int64_t{i}) > max_sector_coordinate || std::abs(std::int64_t{j}) > max_sector_coordinate) {
+        return fail(ReadError::bad_header, std::abs(std::int64_t{i}) > max_sector_coordinate ? h::sector_i : h::sector_j,
+                    "sector (" + std::to_string(i) + ", " + std::to_string(j) + ") is beyond the limit of 16384");
+    }
+    const auto probe_count = load_le<std::uint16_t>(file, h::probe_count);
+    if (probe_count > max_probes) {
+        return fail(ReadError::bad_header, h::probe_count, "probe count " + std::to_string(probe_count) + " is over the limit of 255");
+    }
+    if (file[h::z_shift] > max_z_shift) {
+        return fail(ReadError::bad_header, h::z_shift, "z shift " + std::to_string(file[h::z_shift]) + " is over the limit of 10");
+    }
+    if (std::abs(std::int64_t{load_i32(file, h::z_origin)}) > max_z_origin_units) {
+        return fail(ReadError::bad_header, h::z_origin, "z origin " + std::to_string(load_i32(file, h::z_origin)) + " is over the limit of 2^30");
+    }
+    if (!all_zero(file.subspan(h::reserved, h::checksum - h::reserved))) {
+        return fail(ReadError::bad_header, h::reserved, "reserved header bytes are not zero");
+    }
+    return {};
+}
+
+ReadStatus check_entry(Bytes file, std::size_t at, const SectionEntry& entry, std::size_t& end) {
+    const std::string name = section_name(entry);
+    if (!all_zero(file.subspan(at + layout::entry::reserved, 3)) ||
+        load_le<std::uint32_t>(file, at + layout::entry::reserved2) != 0) {
+        return fail(ReadError::bad_table, at, name + ": reserved bytes of its entry are not zero");
+    }
+    if (entry.offset != layout::align(end)) {
+        return fail(ReadError::bad_table, at, name + " starts at " + std::to_string(entry.offset) + ", must start at " + std::to_string(layout::align(end)));
+    }
+    if (entry.stored_bytes > file.size() || entry.offset > file.size() - entry.stored_bytes) {
+        return fail(ReadError::bad_table, at,
+                    name + " ends at " + std::to_string(std::uint64_t{entry.offset} + entry.stored_bytes) + ", the file has " +
+                        std::to_string(file.size()) + " bytes");
+    }
+    if (entry.raw_bytes > layout::max_raw_section_bytes) {
+        return fail(ReadError::bad_table, at, name + " decodes to " + std::to_string(entry.raw_bytes) + " bytes, over the limit of 16 MiB");
+    }
+    if (entry.codec == static_cast<std::uint8_t>(Codec::raw) && entry.raw_bytes != entry.stored_bytes) {
+        return fail(ReadError::bad_table, at,
+                    name + " is raw but says " + std::to_string(entry.stored_bytes) + " stored and " + std::to_string(entry.raw_bytes) + " raw bytes");
+    }
+    if (!all_zero(file.subspan(end, entry.offset - end))) {
+        return fail(ReadError::bad_table, end, name + ": the padding before it is not zero");
+    }
+    if (xxh64(file.subspan(entry.offset, entry.stored_bytes)) != entry.checksum) {
+        return fail(ReadError::checksum_mismatch, entry.offset, name + ": its checksum does not match its bytes");
+    }
+    end = std::size_t{entry.offset} + entry.stored_bytes;
+    return {};
+}
+
+}  // namespace
+
+std::string_view name_of_section(std::uint16_t kind) {
+    switch (static_cast<SectionKind>(kind)) {
+        case SectionKind::bake: return "bake";
+        case SectionKind::positions: return "positions";
+        case SectionKind::sky_visibility: return "sky visibility";
+        case SectionKind::transfer: return "transfer";
+        case SectionKind::grid: return "grid";
+        case SectionKind::statistics: return "statistics";
+        case SectionKind::static_irradiance: return "static irradiance";
+        case SectionKind::local_transfer: return "local transfer";
+        case SectionKind::convergence: return "convergence";
+    }
+    return "unknown";
+}
+
+ReadStatus read_section_table(std::span<const std::uint8_t> bytes, std::vector<SectionEntry>& entries) {
+    entries.clear();
+    std::size_t section_count = 0;
+    if (ReadStatus status = check_header(bytes, section_count); !status.ok()) return status;
+    std::vector<SectionEntry> found;
+    std::size_t end = layout::header_bytes + section_count * layout::entry_bytes;
+    for (std::size_t n = 0; n < section_count; ++n) {
+        const std::size_t at = layout::header_bytes + n * layout::entry_bytes;
+        const SectionEntry entry = load_entry(bytes, at);
+        if (ReadStatus status = check_entry(bytes, at, entry, end); !status.ok()) return status;
+        for (const SectionEntry& earlier : found) {
+            if (earlier.kind == entry.kind) return fail(ReadError::bad_table, at, section_name(entry) + " stands twice in the table");
+        }
+        found.push_back(entry);
+    }
+    if (end != bytes.size()) {
+        return fail(ReadError::bad_table, end, "the last section ends at " + std::to_string(end) + ", the file has " + std::to_string(bytes.size()) + " bytes");
+    }
+    entries = std::move(found);
+    return {};
+}
+
+}  // namespace drtv

@@ -1,0 +1,140 @@
+// Local transfer of one sector: error of its pairs against rays and time, beside the rest of the bake:
+//   local_bench MAP.glb [I J]
+// Pairs that matter: of each receiver the strongest, which together make 99 % of what it gets from all.
+#include "bakerd/bake/integrate.h"
+#include "bakerd/bake/local_encoding.h"
+#include "bakerd/bake/sector_bake.h"
+#include "bakerd/map/import.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace drtv::bench {
+namespace {
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// Of the numbers (receiver, source) those that matter.
+std::vector<std::pair<std::size_t, std::size_t>> strong_pairs(const bake::LocalLight& light, std::size_t receivers) {
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t p = 0; p < receivers; ++p) {
+        std::vector<std::pair<double, std::size_t>> row;
+        double total = 0;
+        for (std::size_t q = 0; q < light.source_count; ++q) {
+            row.emplace_back(static_cast<double>(light.at(p, q)[1][0]), q);
+            total += row.back().first;
+        }
+        std::sort(row.rbegin(), row.rend());
+        double sum = 0;
+        for (std::size_t n = 0; n < row.size() && sum < 0.99 * total; ++n) {
+            sum += row[n].first;
+            pairs.emplace_back(p, row[n].second);
+        }
+    }
+    return pairs;
+}
+
+double difference(const bake::LocalCoefficients& a, const bake::LocalCoefficients& b) {
+    double square = 0, size = 0;
+    for (std::size_t c = 0; c < channel_count; ++c) {
+        for (std::size_t i = 0; i < sh_count; ++i) {
+            square += std::pow(static_cast<double>(a[c][i] - b[c][i]), 2);
+            size += std::pow(static_cast<double>(b[c][i]), 2);
+        }
+    }
+    return std::sqrt(square / size);
+}
+
+int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
+    const std::size_t slash = path.rfind('/');
+    const std::vector<std::string> names = {path.substr(slash == std::string::npos ? 0 : slash + 1)};
+    auto map = map::import_map(names, map::folder_source(slash == std::string::npos ? "." : path.substr(0, slash)));
+    if (!map) {
+        std::fprintf(stderr, "local_bench: %s\n", map.error().c_str());
+        return 1;
+    }
+    const trace::FloatMode float_mode;
+    const auto world = bake::World::open(trace::Device::open().value(), std::make_shared<map::Map>(std::move(*map))).value();
+    const auto& sectors = world->sectors_with_ground();
+    const map::SectorCoordinate at = chosen.value_or(sectors[sectors.size() / 2]);
+    bake::Settings settings = bake::preset("pc").value();
+    const auto scene = world->scene_for(at, bake::scene_distance_m(settings));
+    std::vector<std::shared_ptr<const bake::Placed>> around;
+    std::vector<const bake::PlacedSector*> neighbours;
+    for (int k = 0; k < 9; ++k) {
+        const map::SectorCoordinate coordinate{at.i + k % 3 - 1, at.j + k / 3 - 1};
+        if (k == 4 || !world->has_ground(coordinate)) continue;
+        around.push_back(world->placed(coordinate, settings, *scene));
+        neighbours.push_back(&**around.back());
+    }
+    const auto own = world->placed(at, settings, *scene);
+    const bake::PlacedSector& placed = **own;
+    const bake::LocalSources sources = bake::local_sources(placed, neighbours, settings.reach_m);
+    const std::size_t receivers = placed.positions.size();
+
+    bake::Settings rest = settings;
+    rest.local_transfer = false;
+    static_cast<void>(bake::bake_sector(*world, at, rest).value());
+    std::vector<double> rest_seconds;
+    for (int n = 0; n < 3; ++n) {
+        const double start = seconds();
+        static_cast<void>(bake::bake_sector(*world, at, rest).value());
+        rest_seconds.push_back(seconds() - start);
+    }
+    std::sort(rest_seconds.begin(), rest_seconds.end());
+    std::printf("sector (%d, %d): %zu probes, %zu sources; the rest of the bake: %.0f ms\n", at.i, at.j, receivers, sources.positions.size(), rest_seconds[1] * 1e3);
+
+    const bake::LocalLight truth = bake::integrate_local(*scene, sources.positions, receivers, {settings.local_bounces, 4096, settings.reach_m});
+    const auto pairs = strong_pairs(truth, receivers);
+    for (const std::uint32_t rays : {16u, 32u, 64u, 128u, 256u, 512u}) {
+        double best = 1e30;
+        bake::LocalLight light;
+        for (int n = 0; n < 3; ++n) {
+            const double start = seconds();
+            light = bake::integrate_local(*scene, sources.positions, receivers, {settings.local_bounces, rays, settings.reach_m});
+            best = std::min(best, seconds() - start);
+        }
+        std::vector<double> errors;
+        for (const auto& [p, q] : pairs) errors.push_back(difference(light.at(p, q), truth.at(p, q)));
+        std::sort(errors.begin(), errors.end());
+        std::printf("rays %4u: %6.0f ms (%.2f of the rest), %7.0f k rays, error of %zu pairs: median %.2f %%, p95 %.2f %%\n", rays, best * 1e3, best / rest_seconds[1], static_cast<double>(light.rays) / 1e3,
+                    errors.size(), 100 * errors[errors.size() / 2], 100 * errors[errors.size() * 95 / 100]);
+        if (rays == settings.local_rays) {
+            const LocalTransfer stored = bake::encode_local(sources, light, receivers, settings.reach_m);
+            std::vector<double> rounding;
+            for (std::size_t p = 0; p < receivers; ++p) {
+                std::uint32_t n = stored.receivers[p].first_pair;
+                for (std::size_t q = 0; q < sources.positions.size(); ++q) {
+                    if (!has_pair(stored.receivers[p], q)) continue;
+                    const float scale = scale_of_exponent(stored.receivers[p].exponent + stored.sources[q].exponent);
+                    bake::LocalCoefficients decoded{};
+                    for (std::size_t c = 0; c < channel_count; ++c) {
+                        for (std::size_t i = 0; i < sh_count; ++i) decoded[c][i] = decode_fixed(stored.pairs[n][c][i], scale);
+                    }
+                    ++n;
+                    if (light.at(p, q)[1][0] > 0) rounding.push_back(difference(decoded, light.at(p, q)));
+                }
+            }
+            std::sort(rounding.begin(), rounding.end());
+            std::printf("  stored: %zu of %zu pairs; rounding of those stored: median %.3f %%, p95 %.3f %%\n", stored.pairs.size(), receivers * sources.positions.size(), 100 * rounding[rounding.size() / 2],
+                        100 * rounding[rounding.size() * 95 / 100]);
+        }
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace drtv::bench
+
+int main(int argc, char** argv) {
+    if (argc != 2 && argc != 4) {
+        std::fprintf(stderr, "usage: local_bench MAP.glb [I J]\n");
+        return 1;
+    }
+    std::optional<drtv::map::SectorCoordinate> sector;
+    if (argc == 4) sector = {std::atoi(argv[2]), std::atoi(argv[3])};
+    return drtv::bench::run(argv[1], sector);
+}

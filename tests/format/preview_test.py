@@ -1,0 +1,81 @@
+"""The pictures of `drtv preview`. Usage: preview_test.py DRTV GOLDEN_FOLDER"""
+import os
+import struct
+import sys
+import unittest
+import zlib
+
+from tool_case import GOLDEN, GOLDEN_1_1, UNREADABLE, Tool, golden, seal
+
+
+class Preview(Tool):
+    def read_png(self, path):
+        """Width, height and filtered rows; checks every chunk's CRC and the data's Adler-32."""
+        with open(path, "rb") as file:
+            data = file.read()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        at, chunks = 8, []
+        while at < len(data):
+            size, = struct.unpack_from(">I", data, at)
+            body = data[at + 4:at + 8 + size]
+            self.assertEqual(struct.unpack_from(">I", data, at + 8 + size)[0], zlib.crc32(body))
+            chunks.append((body[:4], body[4:]))
+            at += 12 + size
+        self.assertEqual([kind for kind, _ in chunks], [b"IHDR", b"IDAT", b"IEND"])
+        width, height, *rest = struct.unpack(">IIBBBBB", chunks[0][1])
+        self.assertEqual(rest, [8, 2, 0, 0, 0])
+        rows = zlib.decompress(chunks[1][1])
+        self.assertEqual(len(rows), height * (3 * width + 1))
+        return width, height, rows
+
+    def test_folder_becomes_a_picture(self):
+        self.write("sectors/one.drtv", golden())
+        for quantity in ("relit", "sky"):
+            out = self.path(quantity + ".png")
+            stdout = self.expect(0, "preview", self.path("sectors"), "--out", out, "--metres-per-pixel", "0.5", "--quantity", quantity)
+            self.assertIn("128 x 128 pixels, 1 sectors, 2 probes", stdout)
+            width, height, rows = self.read_png(out)
+            self.assertEqual((width, height), (128, 128))
+            self.assertGreater(len(set(rows)), 8)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["relit.png", "sectors", "sky.png"])
+
+    def middle_pixel(self, data, x_m, y_m, quantity):
+        """The pixel at (x_m, y_m) in the golden sector, whose north-western corner is (-64, 192)."""
+        out = self.path("pixel.png")
+        self.expect(0, "preview", self.write("pixel.drtv", data), "--out", out, "--metres-per-pixel", "0.5", "--quantity", quantity)
+        width, _, rows = self.read_png(out)
+        stride, x = 3 * width + 1, int((x_m + 64) * 2)
+        row = rows[int((192 - y_m) * 2) * stride:][:stride]
+        self.assertEqual(row[0], 1)  # each pixel is stored as its difference to the one before
+        return tuple(sum(row[1 + c:1 + 3 * (x + 1):3]) % 256 for c in range(3))
+
+    def test_back_hits_colour_a_sector_green_to_red(self):
+        for back_hits, colour in ((0, (0, 255, 0)), (25, (255, 255, 0)), (50, (255, 0, 0)), (1000, (255, 0, 0))):
+            data = golden()
+            struct.pack_into("<QQ", data, 4640 + 24, 1000, back_hits)
+            self.assertEqual(self.middle_pixel(seal(data), -48, 160, "back_hits"), colour, back_hits)
+
+    def test_errors_colour_a_sector_green_to_red_and_grey_where_unknown(self):
+        for p95, colour in ((0.0, (0, 255, 0)), (0.05, (255, 255, 0)), (0.3, (255, 0, 0))):
+            data = golden(GOLDEN_1_1)
+            struct.pack_into("<f", data, 5232 + 8, p95)
+            self.assertEqual(self.middle_pixel(seal(data), -48, 160, "errors"), colour, p95)
+        red, green, blue = self.middle_pixel(golden(), -48, 160, "errors")
+        self.assertTrue(red == green == blue < 255)
+
+    def test_relit_shows_static_irradiance(self):
+        # The map's own light at probe 0 is red.
+        with_light, without = self.middle_pixel(golden(GOLDEN_1_1), -48, 160, "relit"), self.middle_pixel(golden(), -48, 160, "relit")
+        self.assertGreater(with_light[0], without[0])
+        self.assertEqual(with_light[2], without[2])
+
+    def test_place_that_cannot_be_written_exits_2_and_leaves_nothing(self):
+        out = self.path("no such folder/a.png")
+        self.expect(UNREADABLE, "preview", GOLDEN, "--out", out, "--metres-per-pixel", "1", err="cannot write " + out)
+        os.mkdir(self.path("folder.png"))
+        self.expect(UNREADABLE, "preview", GOLDEN, "--out", self.path("folder.png"), "--metres-per-pixel", "1", err="cannot write")
+        self.assertEqual(os.listdir(self.folder), ["folder.png"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
