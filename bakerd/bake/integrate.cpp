@@ -64,7 +64,6 @@ struct Block {
     }
 };
 
-constexpr std::uint32_t first_paths = 256;
 constexpr std::uint32_t numbers_a_light = 3;
 
 // What adds less than this to a path's static light, W/m2, is looked at only so often, and then counts as this much: in
@@ -80,7 +79,7 @@ class Integrator {
 
     ProbeLight run() {
         if (settings_.error > 0) {
-            run_to(std::min(first_paths, samples_.count()));
+            run_to(std::min(SampleTable::first_part, samples_.count()));
             while (reached_error() > static_cast<double>(settings_.error) && 2 * std::uint64_t{light_.paths} <= samples_.count()) {
                 for (std::size_t k = 0; k < block_count / 2; ++k) {
                     Block pair = blocks_[2 * k];
@@ -101,7 +100,7 @@ class Integrator {
   private:
     // Shoots the paths up to `count`, which then make up the blocks.
     void run_to(std::uint32_t count) {
-        for (std::uint32_t n = light_.paths; n < count; ++n) {
+        for (const std::uint32_t n : samples_.side_by_side().subspan(light_.paths, count - light_.paths)) {
             block_ = &blocks_[std::size_t{n} * block_count / count];
             trace_path(n);
         }
@@ -195,7 +194,7 @@ class Integrator {
     // Punctual lights are summed up without noise in the end; emissive surfaces are drawn here.
     void add_emission_drawn_at_probe(std::uint32_t n) {
         if (!next_event_.has_emissive()) return;
-        const std::optional<Incident> incident = next_event_.draw(probe_, light_sample(n, 0));
+        const std::optional<Incident> incident = next_event_.draw(probe_, light_sample(n, 0), {0, 0});
         if (!incident || incident->density <= 0) return;
         constexpr float density = 0.25f * std::numbers::inv_pi_v<float>;
         glm::vec3 light = incident->light * (incident->density / (incident->density + density) * std::numbers::inv_pi_v<float>);
@@ -206,11 +205,11 @@ class Integrator {
     // Light from a static light by way of the surface that was hit: the path's k-th point.
     void add_light_at(const trace::Ray& ray, const trace::Hit& hit, const trace::Surface& surface, std::uint32_t n, std::uint32_t k, const BasisWeights& weights, const glm::vec3& throughput) {
         const glm::vec3 point = ray.origin + ray.direction * hit.distance_m;
-        const auto add_incident = [&](const Incident& incident, float scale) {
+        const auto add_incident = [&](const Incident& incident) {
             const float cosine = glm::dot(incident.direction, hit.normal);
             const bool through = cosine < 0;
             const glm::vec3& share = through ? surface.transmitted : surface.albedo;
-            glm::vec3 light = throughput * share * incident.light * (scale * std::abs(cosine) * 4 * std::numbers::inv_pi_v<float>);
+            glm::vec3 light = throughput * share * incident.light * (std::abs(cosine) * 4 * std::numbers::inv_pi_v<float>);
             if (!survives(light, n, 2 * k + 1)) return;
             const std::optional<glm::vec3> start = through ? beyond_surface(scene_, ray, hit) : before_surface(ray, hit);
             if (!start || !sees(*start, incident)) return;
@@ -221,12 +220,11 @@ class Integrator {
             }
             add(block_->static_light, weights, light);
         };
-        for (const Sun& sun : next_event_.suns()) add_incident(next_event_.towards(sun, point), 1);
+        for (const Sun& sun : next_event_.suns()) add_incident(next_event_.towards(sun, point));
         if (!next_event_.has_drawn_lights()) return;
-        glm::vec3 bound = throughput * (surface.albedo + surface.transmitted) * (next_event_.bound(point) * 4 * std::numbers::inv_pi_v<float>);
-        const float before = brightest(bound);
-        if (!survives(bound, n, 2 * k)) return;
-        if (const std::optional<Incident> incident = next_event_.draw(point, light_sample(n, k))) add_incident(*incident, brightest(bound) / before);
+        const float most = brightest(throughput * (surface.albedo + surface.transmitted)) * (4 * std::numbers::inv_pi_v<float>);
+        const Roulette roulette{static_cast<float>(hashed(shift_[1], n, 2 * k)) * 0x1p-32f, faint / most};
+        if (const std::optional<Incident> incident = next_event_.draw(point, light_sample(n, k), roulette)) add_incident(*incident);
     }
 
     // Russian roulette: faint light is dropped, or raised by as much as it is seldom kept.

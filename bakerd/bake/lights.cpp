@@ -179,17 +179,20 @@ float LightTree::share_of_left(const Node& node, const glm::vec3& from) const {
     return std::clamp(left / (left + right), 0.01f, 0.99f);
 }
 
-float LightTree::bound(const glm::vec3& point) const {
-    if (nodes_.empty()) return 0;
-    const float distance_m = std::max(glm::length(nodes_[0].centre - point) - nodes_[0].radius_m, least_light_distance_m);
-    return nodes_[0].power / (distance_m * distance_m);
-}
-
-LightTree::Drawn LightTree::draw(const glm::vec3& from, double u) const {
+LightTree::Drawn LightTree::draw(const glm::vec3& from, double u, const Roulette& roulette) const {
     Drawn drawn;
     drawn.probability = 1;
     const Node* node = nodes_.data();
-    while (node->left >= 0) {
+    for (;;) {
+        // Given up as soon as the rest of the tree cannot matter.
+        const float distance_m = std::max(glm::length(node->centre - from) - node->radius_m, least_light_distance_m);
+        const float most = node->power / (distance_m * distance_m * drawn.probability);
+        if (most < drawn.survival * roulette.faint) drawn.survival = most / roulette.faint;
+        if (roulette.number >= drawn.survival) {
+            drawn.probability = 0;
+            return drawn;
+        }
+        if (node->left < 0) break;
         const double share = share_of_left(*node, from);
         const bool left = u < share;
         u = std::clamp(left ? u / share : (u - share) / (1 - share), 0.0, 1 - 0x1p-32);

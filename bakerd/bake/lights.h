@@ -74,6 +74,13 @@ class StaticLights {
     std::vector<EmissiveObject> emissive_;  // in the map's order of objects
 };
 
+// Light that cannot bring more than `faint`, W/m2 over the probability of its draw, is kept only so often: when the number in
+// [0, 1) is below its share of that. Then it counts as if it brought that much, so that nothing is lost on average. A faint of
+// 0 keeps all.
+struct Roulette {
+    float number = 0, faint = 0;
+};
+
 // The lights that a probe can know of, in a tree from which one is drawn with a probability that falls with the square of
 // the distance (Conty and Kulla 2018, without their cones). A function of these lights alone.
 class LightTree {
@@ -87,7 +94,8 @@ class LightTree {
     };
     struct Drawn {
         Item item;
-        float probability = 0;
+        float probability = 0;  // of the draw; 0 when it was given up
+        float survival = 1;     // of the roulette
         double rest = 0;  // of the number that chose, uniform in [0, 1) again
     };
 
@@ -95,9 +103,7 @@ class LightTree {
     [[nodiscard]] bool has_emissive() const { return !leaf_of_object_.empty(); }
     [[nodiscard]] std::span<const PointLight* const> points() const { return points_; }
     // REQUIRES: not empty.
-    [[nodiscard]] Drawn draw(const glm::vec3& from, double u) const;
-    // At most what all lights together send a surface at the point, W/m2 summed over channels, without shadows.
-    [[nodiscard]] float bound(const glm::vec3& point) const;
+    [[nodiscard]] Drawn draw(const glm::vec3& from, double u, const Roulette& roulette) const;
     // The probability with which `draw` gives the emissive object; 0 when it is not in the tree.
     [[nodiscard]] float probability_of(const glm::vec3& from, std::uint32_t object) const;
     [[nodiscard]] const EmissiveObject* emissive_of(std::uint32_t object) const;

@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 namespace drtv::bake {
@@ -43,27 +42,34 @@ struct End {
     glm::vec3 first{};                       // the first point
 };
 
+// The numbers of up to group_size ends as `join` reads them, one after the other: so the compiler takes eight at a time.
+// Behind the last end all are such that nothing comes of them.
+struct Group {
+    using Numbers = std::array<float, group_size>;
+
+    std::vector<End> ends;
+    alignas(32) Numbers x{}, y{}, z{}, normal_x{}, normal_y{}, normal_z{}, first_x{}, first_y{}, first_z{};
+    alignas(32) Numbers density{}, density_front{}, density_back{}, to_receiver{}, from_light{};
+    alignas(32) Numbers bright_front{}, bright_back{};  // what it sends on, summed over channels; 0 where it has no such side
+
+    void add(const End& end) {
+        const std::size_t k = ends.size();
+        x[k] = end.position.x, y[k] = end.position.y, z[k] = end.position.z;
+        normal_x[k] = end.normal.x, normal_y[k] = end.normal.y, normal_z[k] = end.normal.z;
+        first_x[k] = end.first.x, first_y[k] = end.first.y, first_z[k] = end.first.z;
+        density[k] = end.density, density_front[k] = end.density_front, density_back[k] = end.density_back;
+        to_receiver[k] = end.to_receiver, from_light[k] = end.from_light;
+        bright_front[k] = end.albedo.x + end.albedo.y + end.albedo.z;
+        bright_back[k] = end.beyond ? end.transmitted.x + end.transmitted.y + end.transmitted.z : 0;
+        ends.push_back(end);
+    }
+};
+
 // SH of E/pi from radiance out of the unit direction: the cosine's own coefficients over pi are 1 and 2/3.
 Float4 irradiance_sh(const glm::vec3& w) {
     Float4 y = evaluate_sh({w.x, w.y, w.z});
     for (std::size_t i = 1; i < sh_count; ++i) y[i] *= 2 / 3.0f;
     return y;
-}
-
-// Numbers of a table so that those whose first two dimensions lie side by side follow each other: each run of a power of
-// two shares a square, and a digital shift moves squares as wholes.
-std::vector<std::uint32_t> square_by_square(const SampleTable& samples) {
-    const auto code = [&](std::uint32_t n) {
-        std::uint64_t morton = 0;
-        for (std::uint32_t bit = 0; bit < 32; ++bit) {
-            morton = morton << 2 | std::uint64_t{samples.point(n)[0] >> (31 - bit) & 1u} << 1 | (samples.point(n)[1] >> (31 - bit) & 1u);
-        }
-        return morton;
-    };
-    std::vector<std::uint32_t> order(samples.count());
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::sort(order, {}, code);
-    return order;
 }
 
 // What the paths of one source brought, by the other source of the pair.
@@ -76,7 +82,7 @@ struct Brought {
 class LocalIntegrator {
   public:
     LocalIntegrator(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const LocalSettings& settings)
-        : scene_(scene), settings_(settings), receiver_count_(receiver_count), samples_(settings.rays, 2 + 2 * (settings.bounces - 1)), order_(square_by_square(samples_)) {
+        : scene_(scene), settings_(settings), receiver_count_(receiver_count), samples_(settings.rays, 2 + 2 * (settings.bounces - 1)) {
         for (const glm::ivec3& units : sources) {
             positions_.push_back(glm::vec3(units) * position_unit_m);
             shifts_.push_back(digital_shift(units));
@@ -106,27 +112,23 @@ class LocalIntegrator {
     }
 
   private:
-    using Ends = std::vector<std::vector<End>>;  // by number of bounces
 
     Brought bring(std::size_t p) const {
         Brought brought;
         brought.here.resize(positions_.size());
         brought.there.resize(positions_.size());
+        Work work;
         for (std::uint32_t first = 0; first < samples_.count(); first += group_size) {
-            Ends groups(settings_.bounces);
-            for (std::uint32_t n = first; n < std::min(first + group_size, samples_.count()); ++n) trace_path(p, samples_.point(order_[n]), groups, brought.rays);
+            std::vector<Group> groups(settings_.bounces);  // by number of bounces
+            for (std::uint32_t n = first; n < std::min(first + group_size, samples_.count()); ++n) trace_path(p, samples_.point(samples_.side_by_side()[n]), groups, brought.rays);
             for (std::uint32_t bounce = 0; bounce < settings_.bounces; ++bounce) {
-                if (groups[bounce].empty()) continue;
-                for (std::size_t q = 0; q < positions_.size(); ++q) {
-                    // Pairs of two neighbours' probes are another sector's.
-                    if (p < receiver_count_ || q < receiver_count_) join(p, q, groups[bounce], first * settings_.bounces + bounce, brought);
-                }
+                if (!groups[bounce].ends.empty()) join_all(p, groups[bounce], bounce == 0, first * settings_.bounces + bounce, work, brought);
             }
         }
         return brought;
     }
 
-    void trace_path(std::size_t p, std::span<const std::uint32_t> numbers, Ends& groups, std::uint64_t& rays) const {
+    void trace_path(std::size_t p, std::span<const std::uint32_t> numbers, std::vector<Group>& groups, std::uint64_t& rays) const {
         const auto sample = [&](std::size_t d) { return glm::vec2(unit_float(numbers[d] ^ shifts_[p][d]), unit_float(numbers[d + 1] ^ shifts_[p][d + 1])); };
         trace::Ray ray{positions_[p], uniform_sphere(sample(0)), settings_.reach_m};
         End end;
@@ -159,7 +161,7 @@ class LocalIntegrator {
                 end.density_front = 1 - share;
                 end.density_back = share;
             }
-            groups[bounce].push_back(end);
+            groups[bounce].add(end);
             if (bounce + 1 == settings_.bounces) return;
             const std::optional<Scattered> next = scatter(scene_, ray, *hit, surface, sample(2 + 2 * std::size_t{bounce}));
             if (!next) return;
@@ -176,81 +178,108 @@ class LocalIntegrator {
         }
     }
 
-    // One group of ends and the other source q.
-    void join(std::size_t p, std::size_t q, const std::vector<End>& group, std::uint32_t number, Brought& brought) const {
-        struct Link {
-            glm::vec3 colour;
-            float here, there;     // of receivers here and there, but for colour and direction
-            float strength;        // what it brings, for the draw
-            glm::vec3 way;         // from q
-            bool behind;
-        };
-        std::array<Link, group_size> links;
-        float total = 0;
-        const float scale = 4 / static_cast<float>(settings_.rays);  // 4 pi of the sphere, over pi of the bounce
-        for (std::size_t k = 0; k < group.size(); ++k) {
-            const End& end = group[k];
-            Link& link = links[k];
-            const glm::vec3 way = end.position - positions_[q];
-            const float squared = glm::dot(way, way), distance_m = std::sqrt(squared);
-            const float facing = -glm::dot(way, end.normal);
-            link.behind = facing < 0;
-            link.strength = 0;
-            if (link.behind && !end.beyond) continue;
-            const float cosine = std::abs(facing) / distance_m;
-            if (!(cosine > 0)) continue;
-            const bool own = p == q;
-            const glm::vec3 first_way = end.first - positions_[q];
-            const bool reached = !own && std::max(squared, glm::dot(first_way, first_way)) <= square(settings_.reach_m);
-            const float to_there = cosine / squared;
-            const float density = end.density + (reached ? to_there * (link.behind ? end.density_back : end.density_front) : 0);
-            link.here = scale * end.to_receiver * cosine / std::max(squared, square(local_least_distance_m)) / density;
-            link.there = reached ? scale * end.from_light * to_there / density : 0;
-            link.colour = link.behind ? end.transmitted : end.albedo;
-            link.way = way / distance_m;
-            link.strength = link.here * (link.colour.x + link.colour.y + link.colour.z);
-            total += link.strength;
+    // What the ends of a group do for one pair.
+    struct Links {
+        std::size_t source = 0;  // q
+        alignas(32) Group::Numbers strength;      // what each brings, for the draw; 0: nothing
+        alignas(32) Group::Numbers here, there;   // to receivers here and there, but for colour and direction
+        alignas(32) Group::Numbers way_x, way_y, way_z;  // from q, unit
+        alignas(32) Group::Numbers facing;        // negative where q is on the other side of the surface
+    };
+    // Kept from group to group: as much as the caches hold, and never cleared.
+    struct Work {
+        std::vector<Links> joined;
+        std::vector<trace::Ray> shadows;
+        std::vector<bool> hidden;
+    };
+
+    // One group of ends, and all other sources that it may serve.
+    void join_all(std::size_t p, const Group& group, bool first_bounce, std::uint32_t number, Work& work, Brought& brought) const {
+        work.joined.resize(positions_.size());
+        work.shadows.clear();
+        for (std::size_t q = 0; q < positions_.size(); ++q) {
+            if (p >= receiver_count_ && q >= receiver_count_) break;  // pairs of two neighbours' probes are another sector's
+            Links& links = work.joined[work.shadows.size()];
+            const float total = join(p, q, group, links);
+            if (!(total > 0)) continue;
+            // A path's first point sees where the path came from.
+            if (p == q && first_bounce) add(p, group, links, brought);
+            else work.shadows.push_back(shadow_ray(p, group, links, total, number));
         }
-        if (!(total > 0)) return;
-        if (!(p == q && group[0].first == group[0].position) && !sees(p, q, group, links, total, number, brought.rays)) return;
-        LocalCoefficients& here = brought.here[q];
-        LocalCoefficients& there = brought.there[q];
-        const bool wants_there = q < receiver_count_;
-        for (std::size_t k = 0; k < group.size(); ++k) {
-            const Link& link = links[k];
-            if (!(link.strength > 0)) continue;
-            const Float4 back = irradiance_sh(link.way);
-            for (std::size_t c = 0; c < channel_count; ++c) {
-                const float colour = link.colour[static_cast<glm::length_t>(c)];
-                for (std::size_t i = 0; i < sh_count; ++i) here[c][i] += link.here * colour * group[k].direction[i];
-                for (std::size_t i = 0; wants_there && i < sh_count; ++i) there[c][i] += link.there * colour * back[i];
-            }
+        brought.rays += work.shadows.size();
+        scene_.occluded(work.shadows, work.hidden);
+        for (std::size_t n = 0; n < work.shadows.size(); ++n) {
+            if (!work.hidden[n]) add(p, group, work.joined[n], brought);
         }
     }
 
-    // Whether the end that answers for the group sees q.
-    template <class Links>
-    bool sees(std::size_t p, std::size_t q, const std::vector<End>& group, const Links& links, float total, std::uint32_t number, std::uint64_t& rays) const {
-        float left = static_cast<float>(hashed(shifts_[p][0], number, shifts_[q][0])) * 0x1p-32f * total;
+    // The sum of all strengths.
+    float join(std::size_t p, std::size_t q, const Group& group, Links& links) const {
+        const float scale = 4 / static_cast<float>(settings_.rays);  // 4 pi of the sphere, over pi of the bounce
+        const float other = p == q ? 0.0f : 1.0f, square_reach = square(settings_.reach_m);
+        const glm::vec3 from = positions_[q];
+        links.source = q;
+        for (std::size_t k = 0; k < group_size; ++k) {
+            const float x = group.x[k] - from.x, y = group.y[k] - from.y, z = group.z[k] - from.z;
+            const float first_x = group.first_x[k] - from.x, first_y = group.first_y[k] - from.y, first_z = group.first_z[k] - from.z;
+            const float facing = -(x * group.normal_x[k] + y * group.normal_y[k] + z * group.normal_z[k]);
+            const float squared = std::max(x * x + y * y + z * z, 1e-12f), inverse = 1 / std::sqrt(squared);
+            const float cosine = std::abs(facing) * inverse;
+            const float farthest = std::max(squared, first_x * first_x + first_y * first_y + first_z * first_z);
+            const float to_there = farthest <= square_reach ? cosine * inverse * inverse * other : 0.0f;
+            const float bright = facing < 0 ? group.bright_back[k] : group.bright_front[k];
+            const float density = group.density[k] + to_there * (facing < 0 ? group.density_back[k] : group.density_front[k]);
+            const float over_density = density > 0 ? scale / density : 0.0f;
+            links.here[k] = group.to_receiver[k] * cosine / std::max(squared, square(local_least_distance_m)) * over_density;
+            links.there[k] = group.from_light[k] * to_there * over_density;
+            links.way_x[k] = x * inverse;
+            links.way_y[k] = y * inverse;
+            links.way_z[k] = z * inverse;
+            links.facing[k] = facing;
+            links.strength[k] = links.here[k] * bright;
+        }
+        float total = 0;
+        for (const float strength : links.strength) total += strength;
+        return total;
+    }
+
+    // From the end that answers for the group to q.
+    [[nodiscard]] trace::Ray shadow_ray(std::size_t p, const Group& group, const Links& links, float total, std::uint32_t number) const {
+        float left = static_cast<float>(hashed(shifts_[p][0], number, shifts_[links.source][0])) * 0x1p-32f * total;
         std::size_t drawn = 0;
-        for (std::size_t k = 0; k < group.size(); ++k) {
-            if (!(links[k].strength > 0)) continue;
+        for (std::size_t k = 0; k < group.ends.size(); ++k) {
+            if (!(links.strength[k] > 0)) continue;
             drawn = k;
-            left -= links[k].strength;
+            left -= links.strength[k];
             if (left < 0) break;
         }
-        const glm::vec3& start = links[drawn].behind ? *group[drawn].beyond : group[drawn].before;
-        const glm::vec3 way = positions_[q] - start;
+        const glm::vec3& start = links.facing[drawn] < 0 ? *group.ends[drawn].beyond : group.ends[drawn].before;
+        const glm::vec3 way = positions_[links.source] - start;
         const float distance_m = glm::length(way);
-        ++rays;
-        return !scene_.occluded({start, way / distance_m, distance_m});
+        return {start, way / distance_m, distance_m};
+    }
+
+    void add(std::size_t p, const Group& group, const Links& links, Brought& brought) const {
+        LocalCoefficients& here = brought.here[links.source];
+        LocalCoefficients& there = brought.there[links.source];
+        const bool wants_here = p < receiver_count_, wants_there = links.source < receiver_count_;
+        for (std::size_t k = 0; k < group.ends.size(); ++k) {
+            if (!(links.strength[k] > 0)) continue;
+            const End& end = group.ends[k];
+            const glm::vec3& colours = links.facing[k] < 0 ? end.transmitted : end.albedo;
+            const Float4 back = irradiance_sh({links.way_x[k], links.way_y[k], links.way_z[k]});
+            for (std::size_t c = 0; c < channel_count; ++c) {
+                const float colour = colours[static_cast<glm::length_t>(c)];
+                for (std::size_t i = 0; wants_here && i < sh_count; ++i) here[c][i] += links.here[k] * colour * end.direction[i];
+                for (std::size_t i = 0; wants_there && i < sh_count; ++i) there[c][i] += links.there[k] * colour * back[i];
+            }
+        }
     }
 
     const trace::Scene& scene_;
     const LocalSettings& settings_;
     const std::size_t receiver_count_;
     const SampleTable samples_;
-    const std::vector<std::uint32_t> order_;
     std::vector<glm::vec3> positions_;  // of the sources, receivers first
     std::vector<std::array<std::uint32_t, max_sample_dimensions>> shifts_;
 };

@@ -19,11 +19,12 @@ Incident NextEvent::towards(const PointLight& light, const glm::vec3& from) cons
 
 Incident NextEvent::towards(const Sun& sun, const glm::vec3& from) const { return {sun.towards, sun.irradiance, exit_distance(from, sun.towards, probe_, reach_m_), 0}; }
 
-std::optional<Incident> NextEvent::draw(const glm::vec3& from, const std::array<double, 3>& u) const {
-    const LightTree::Drawn drawn = tree_.draw(from, u[0]);
+std::optional<Incident> NextEvent::draw(const glm::vec3& from, const std::array<double, 3>& u, const Roulette& roulette) const {
+    const LightTree::Drawn drawn = tree_.draw(from, u[0], roulette);
+    if (!(drawn.probability > 0)) return std::nullopt;
     if (drawn.item.point != nullptr) {
         Incident incident = towards(*drawn.item.point, from);
-        incident.light /= drawn.probability;
+        incident.light /= drawn.probability * drawn.survival;
         return incident;
     }
     const std::vector<EmissiveObject::Triangle>& triangles = drawn.item.emissive->triangles;
@@ -46,7 +47,7 @@ std::optional<Incident> NextEvent::draw(const glm::vec3& from, const std::array<
     if (!trace::is_there(lights_.map(), primitive, triangle.triangle, u_weight, v_weight)) return std::nullopt;
     Incident incident{direction, glm::vec3(0), distance_m, 0};
     incident.density = drawn.probability * triangle.share * 2 / double_area_m2 * distance_m * distance_m / std::abs(cosine);
-    incident.light = trace::emission_at(lights_.map(), primitive, triangle.triangle, u_weight, v_weight, double_area_m2, distance_m * first_footprint) / (lumens_per_watt * incident.density);
+    incident.light = trace::emission_at(lights_.map(), primitive, triangle.triangle, u_weight, v_weight, double_area_m2, distance_m * first_footprint) / (lumens_per_watt * incident.density * drawn.survival);
     return incident;
 }
 

@@ -34,10 +34,8 @@ class NextEvent {
 
     [[nodiscard]] Incident towards(const PointLight& light, const glm::vec3& from) const;
     [[nodiscard]] Incident towards(const Sun& sun, const glm::vec3& from) const;
-    // At most what drawn lights send a surface at the point, W/m2.
-    [[nodiscard]] float bound(const glm::vec3& point) const { return tree_.bound(point); }
     // One light of the tree by the three numbers; nothing where the draw sends no light.
-    [[nodiscard]] std::optional<Incident> draw(const glm::vec3& from, const std::array<double, 3>& u) const;
+    [[nodiscard]] std::optional<Incident> draw(const glm::vec3& from, const std::array<double, 3>& u, const Roulette& roulette) const;
 
     // Radiance of an emissive surface that a path from `from` has hit, with the density of `draw` for its direction.
     [[nodiscard]] float density_of(const glm::vec3& from, const glm::vec3& direction, const trace::Hit& hit) const;

@@ -1,7 +1,9 @@
 #include "bakerd/bake/sampling.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace drtv::bake {
 namespace {
@@ -96,6 +98,18 @@ SampleTable::SampleTable(std::uint32_t count, std::uint32_t dimensions) : count_
             words_[std::size_t{n} * dimensions + d] = owen_scramble(word, d);
         }
     }
+    order_.resize(count);
+    std::iota(order_.begin(), order_.end(), 0u);
+    for (std::uint32_t from = 0, to = first_part; from < count; from = to, to *= 2) {
+        std::sort(order_.begin() + from, order_.begin() + std::min(to, count), [&](std::uint32_t a, std::uint32_t b) { return place_of(a) < place_of(b); });
+    }
+}
+
+// The place of the first two dimensions along a Z-order curve.
+std::uint64_t SampleTable::place_of(std::uint32_t n) const {
+    std::uint64_t place = 0;
+    for (std::uint32_t bit = 32; bit-- > 0;) place = place << 2 | std::uint64_t{point(n)[0] >> bit & 1u} << 1 | (point(n)[1] >> bit & 1u);
+    return place;
 }
 
 std::array<std::uint32_t, max_sample_dimensions> digital_shift(const glm::ivec3& p) {

@@ -25,9 +25,18 @@ class SampleTable {
     [[nodiscard]] std::uint32_t count() const { return count_; }
     [[nodiscard]] std::span<const std::uint32_t> point(std::uint32_t n) const { return {&words_[std::size_t{n} * dimensions_], dimensions_}; }
 
+    // All numbers of points, so that those whose first two dimensions lie side by side follow each other: rays in this order
+    // meet the same parts of a BVH. Within 256, 512, 1024, ... points each; so the first of these are whole. Of each such
+    // part a run of a power of two shares a square, and a digital shift moves squares as wholes.
+    [[nodiscard]] std::span<const std::uint32_t> side_by_side() const { return order_; }
+    static constexpr std::uint32_t first_part = 256;
+
   private:
+    [[nodiscard]] std::uint64_t place_of(std::uint32_t n) const;
+
     std::uint32_t count_, dimensions_;
     std::vector<std::uint32_t> words_;  // fixed point, 32 bits after the point
+    std::vector<std::uint32_t> order_;
 };
 
 // A probe's own digital shift of the table: words to be XORed, a function of its quantised position alone.

@@ -37,8 +37,8 @@ struct Shared {
 // Adds a warning to the map, once.
 void warn(Map& map, const std::string& sentence);
 
-// "material 3 ('wall')"; -1 is glTF's default material.
-[[nodiscard]] std::string name_of_material(const GltfDocument& document, int material);
+// "material 3 ('wall')".
+[[nodiscard]] std::string name_of_material(const GltfDocument& document, std::size_t material);
 
 [[nodiscard]] tl::expected<MaterialIndices, std::string> import_materials(const GltfDocument& document, Map& map, Shared& shared);
 

@@ -209,9 +209,8 @@ void warn(Map& map, const std::string& sentence) {
     if (map.warnings.size() < most && std::ranges::find(map.warnings, sentence) == map.warnings.end()) map.warnings.push_back(as_sentence(sentence));
 }
 
-std::string name_of_material(const GltfDocument& document, int material) {
-    if (material < 0) return "glTF's default material";
-    const std::string& name = document.model.materials[static_cast<std::size_t>(material)].name;
+std::string name_of_material(const GltfDocument& document, std::size_t material) {
+    const std::string& name = document.model.materials[material].name;
     return name.empty() ? fmt::format("material {}", material) : fmt::format("material {} ('{}')", material, name);
 }
 
@@ -224,7 +223,7 @@ tl::expected<MaterialIndices, std::string> import_materials(const GltfDocument& 
             indices.push_back(UINT32_MAX);
             continue;
         }
-        auto material = importer.import(document.model.materials[n], name_of_material(document, static_cast<int>(n)));
+        auto material = importer.import(document.model.materials[n], name_of_material(document, n));
         if (!material) return tl::unexpected(material.error());
         indices.push_back(keep(*material, map, shared));
     }

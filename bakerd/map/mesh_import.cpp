@@ -145,7 +145,7 @@ void warn_of_brightness(const GltfDocument& document, int gltf_material, const P
     const Material& material = map.materials[primitive.material];
     glm::vec3 albedo(material.base_colour);
     const auto too_bright = [&] { return std::max({albedo.x, albedo.y, albedo.z}) > max_albedo; };
-    if (!too_bright()) return;
+    if (gltf_material < 0 || !too_bright()) return;  // glTF's default material is white, and nobody's choice
     if (!primitive.colours.empty()) {
         glm::vec3 most(0);
         for (const glm::vec4& colour : primitive.colours) most = glm::max(most, glm::vec3(colour));
@@ -156,7 +156,7 @@ void warn_of_brightness(const GltfDocument& document, int gltf_material, const P
         if (added) entry->second = brightest(map.textures[material.base_texture.texture]);
         albedo *= entry->second;
     }
-    if (too_bright()) warn(map, document.at(fmt::format("{}: its albedo reaches {:.3g}, and counts as {}", name_of_material(document, gltf_material), std::max({albedo.x, albedo.y, albedo.z}), max_albedo)));
+    if (too_bright()) warn(map, document.at(fmt::format("{}: its albedo reaches {:.3g}, and counts as {}", name_of_material(document, static_cast<std::size_t>(gltf_material)), std::max({albedo.x, albedo.y, albedo.z}), max_albedo)));
 }
 
 }  // namespace

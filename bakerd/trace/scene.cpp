@@ -176,6 +176,17 @@ Surface Scene::surface(const Hit& hit, float footprint_m) const {
     return surface_at(*map_, map_->meshes[object.mesh].primitives[hit.primitive], object.role, hit.triangle, hit.u, hit.v, hit.front, hit.double_area_m2, footprint_m);
 }
 
+void Scene::occluded(std::span<const Ray> rays, std::vector<bool>& answers) const {
+    Query query;
+    query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    thread_local std::vector<RTCRay> stream;
+    stream.clear();
+    for (const Ray& ray : rays) stream.push_back(embree_ray(ray));
+    rtcOccluded1M(handle_, &query.base, stream.data(), static_cast<unsigned>(stream.size()), sizeof(RTCRay));
+    answers.clear();
+    for (const RTCRay& ray : stream) answers.push_back(ray.tfar < 0);
+}
+
 std::size_t Scene::crossings(const Ray& ray) const {
     std::vector<Crossing> crossings;
     Query query;

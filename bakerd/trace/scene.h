@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 struct RTCSceneTy;
@@ -61,6 +62,8 @@ class Scene {
     // Textures are averaged over a width of `footprint_m`.
     [[nodiscard]] Surface surface(const Hit& hit, float footprint_m) const;
     [[nodiscard]] bool occluded(const Ray& ray) const;
+    // The same for many rays at once, which Embree does faster where they are incoherent.
+    void occluded(std::span<const Ray> rays, std::vector<bool>& answers) const;
     // How many surfaces the ray crosses, each at least once.
     [[nodiscard]] std::size_t crossings(const Ray& ray) const;
 

@@ -16,10 +16,10 @@
 namespace drtv::trace {
 namespace {
 
-bool lets_through(const RTCFilterFunctionNArguments& args) {
+bool lets_through(const RTCFilterFunctionNArguments& args, unsigned ray) {
     const auto& set = *static_cast<const TriangleSet*>(args.geometryUserPtr);
     if (!set.mixed) return false;
-    return !is_there(*set.map, *set.primitive, set.triangle_of(RTCHitN_primID(args.hit, 1, 0)), RTCHitN_u(args.hit, 1, 0), RTCHitN_v(args.hit, 1, 0));
+    return !is_there(*set.map, *set.primitive, set.triangle_of(RTCHitN_primID(args.hit, args.N, ray)), RTCHitN_u(args.hit, args.N, ray), RTCHitN_v(args.hit, args.N, ray));
 }
 
 // Keeps the closest hit, and of several at the same distance the one of the smallest id: the order in which the BVH
@@ -35,7 +35,7 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
     const auto& set = *static_cast<const TriangleSet*>(args->geometryUserPtr);
     if (id.instance == RTC_INVALID_GEOMETRY_ID) id.instance = set.instance;
     const bool farther = distance > query.best_distance || (distance == query.best_distance && query.best < id);
-    if (farther || lets_through(*args)) {
+    if (farther || lets_through(*args, 0)) {
         args->valid[0] = 0;
         return;
     }
@@ -52,8 +52,9 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
 }
 
 void occluded_filter(const RTCFilterFunctionNArguments* args) {
-    assert(args->N == 1);
-    if (args->valid[0] == -1 && lets_through(*args)) args->valid[0] = 0;
+    for (unsigned ray = 0; ray < args->N; ++ray) {
+        if (args->valid[ray] == -1 && lets_through(*args, ray)) args->valid[ray] = 0;
+    }
 }
 
 std::uint64_t position_hash(const glm::vec3& p) {

@@ -65,6 +65,37 @@ TEST(ContentDigest, ChangesWithAllThatABakeSees) {
         {"the cutoff", [](auto& b) { b.json["materials"][0]["alphaCutoff"] = 0.25; }},
         {"the mask", [](auto& b) { b.json["materials"][0]["alphaMode"] = "OPAQUE"; }},
         {"the sides", [](auto& b) { b.json["materials"][0]["doubleSided"] = true; }},
+        {"blending", [](auto& b) { b.json["materials"][0]["alphaMode"] = "BLEND"; }},
+        {"blending without a picture", [](auto& b) { b.json["materials"][1]["alphaMode"] = "BLEND"; }},
+        {"a factor of the blended alpha",
+         [](auto& b) {
+             b.json["materials"][1]["alphaMode"] = "BLEND";
+             b.json["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.25;
+         }},
+        {"emission", [](auto& b) { b.json["materials"][1]["emissiveFactor"] = {0, 0.5, 0}; }},
+        {"emission's strength",
+         [](auto& b) {
+             b.json["materials"][1]["emissiveFactor"] = {0, 0.5, 0};
+             b.json["materials"][1]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 9;
+         }},
+        {"emission's picture",
+         [](auto& b) {
+             b.json["materials"][1]["emissiveFactor"] = {0, 0.5, 0};
+             b.json["materials"][1]["emissiveTexture"] = {{"index", 0}};
+         }},
+        {"emission's coordinates",
+         [](auto& b) {
+             b.json["materials"][1]["emissiveFactor"] = {0, 0.5, 0};
+             b.json["materials"][1]["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
+         }},
+        {"the transform of emission's coordinates",
+         [](auto& b) {
+             b.json["materials"][1]["emissiveFactor"] = {0, 0.5, 0};
+             b.json["materials"][1]["emissiveTexture"] = {{"index", 0}};
+             b.json["materials"][1]["emissiveTexture"]["extensions"]["KHR_texture_transform"]["rotation"] = 0.5;
+         }},
+        {"transmission", [](auto& b) { b.json["materials"][1]["extensions"]["KHR_materials_diffuse_transmission"]["diffuseTransmissionFactor"] = 0.5; }},
+        {"transmission's colour", [](auto& b) { b.json["materials"][1]["extensions"]["KHR_materials_diffuse_transmission"] = {{"diffuseTransmissionFactor", 0.5}, {"diffuseTransmissionColorFactor", {1, 0.5, 1}}}; }},
         {"a texel", [](auto& b) { b.json["images"][0]["bufferView"] = b.add_view(png_of({2, 1, {201, 10, 10, 255, 10, 200, 10, 0}})); }},
         {"a texel's alpha", [](auto& b) { b.json["images"][0]["bufferView"] = b.add_view(png_of({2, 1, {200, 10, 10, 255, 10, 200, 10, 1}})); }},
         {"the picture's shape", [](auto& b) { b.json["images"][0]["bufferView"] = b.add_view(png_of({1, 2, {200, 10, 10, 255, 10, 200, 10, 0}})); }},
@@ -137,6 +168,11 @@ TEST(ContentDigest, DoesNotSeeWhatABakeDoesNot) {
         {"normals", [](auto& b) { b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"]; }},
         {"texture coordinates of an untextured mesh", [](auto& b) { b.json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0"); }},
         {"roughness", [](auto& b) { b.json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.25; }},
+        {"the strength of no emission", [](auto& b) { b.json["materials"][1]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 9; }},
+        {"the picture of no emission", [](auto& b) { b.json["materials"][1]["emissiveTexture"] = {{"index", 0}}; }},
+        {"the colour of no transmission", [](auto& b) { b.json["materials"][1]["extensions"]["KHR_materials_diffuse_transmission"] = {{"diffuseTransmissionColorFactor", {1, 0.5, 1}}}; }},
+        {"the picture of no transmission", [](auto& b) { b.json["materials"][1]["extensions"]["KHR_materials_diffuse_transmission"] = {{"diffuseTransmissionTexture", {{"index", 0}}}}; }},
+        {"the cutoff of an opaque material", [](auto& b) { b.json["materials"][1]["alphaCutoff"] = 0.125; }},
         {"alpha of an opaque material", [](auto& b) { b.json["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.25; }},
         {"minus zero for a colour", [](auto& b) { b.json["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"][0] = -0.0; }},
         {"a transform of coordinates that changes nothing", [](auto& b) { b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {{"rotation", 0}}; }},
