@@ -136,7 +136,8 @@ class Integrator {
         for (std::uint32_t bounce = 0;; ++bounce) {
             ++light_.rays;
             if (log_ != nullptr) log_->paths.push_back(ray);
-            const std::optional<trace::Hit> hit = scene_.closest(ray);
+            std::optional<trace::Hit> hit = scene_.closest(ray);
+            if (!hit) hit = doubted(ray);
             if (!hit) {
                 if (bounce == 0) add_sky(weights, half);
                 else if (ray.direction.z > 0) add_bounce(weights, half, throughput, ray.direction);
@@ -158,6 +159,17 @@ class Integrator {
             density = next->density;
             ray = {next->origin, next->direction, exit_distance(next->origin, next->direction, probe_, settings_.reach_m)};
         }
+    }
+
+    // A closed room has no sky at all, not even one ray of it: the first misses are looked at twice. Where these stand, the sky
+    // is in sight, and a ray more or less of it is no leak.
+    std::optional<trace::Hit> doubted(const trace::Ray& ray) {
+        constexpr int doubted_misses = 8;
+        if (misses_ >= doubted_misses) return std::nullopt;
+        ++light_.rays;
+        std::optional<trace::Hit> hit = scene_.beside(ray);
+        if (!hit) ++misses_;
+        return hit;
     }
 
     void count_back_hit(std::uint32_t object) {
@@ -301,6 +313,7 @@ class Integrator {
     std::array<Accumulator, 2> bounce_sum_{};
     std::array<double, basis_count> visible_sum_{};
     BasisSums direct_{};
+    int misses_ = 0;  // that were looked at twice
     ProbeLight light_;
 };
 

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace drtv::bake {
 namespace {
@@ -98,10 +99,19 @@ SampleTable::SampleTable(std::uint32_t count, std::uint32_t dimensions) : count_
             words_[std::size_t{n} * dimensions + d] = owen_scramble(word, d);
         }
     }
-    order_.resize(count);
+    put_side_by_side();
+}
+
+SampleTable::SampleTable(std::vector<std::uint32_t> words, std::uint32_t dimensions)
+    : count_(static_cast<std::uint32_t>(words.size() / dimensions)), dimensions_(dimensions), words_(std::move(words)) {
+    put_side_by_side();
+}
+
+void SampleTable::put_side_by_side() {
+    order_.resize(count_);
     std::iota(order_.begin(), order_.end(), 0u);
-    for (std::uint32_t from = 0, to = first_part; from < count; from = to, to *= 2) {
-        std::sort(order_.begin() + from, order_.begin() + std::min(to, count), [&](std::uint32_t a, std::uint32_t b) { return place_of(a) < place_of(b); });
+    for (std::uint32_t from = 0, to = first_part; from < count_; from = to, to *= 2) {
+        std::sort(order_.begin() + from, order_.begin() + std::min(to, count_), [&](std::uint32_t a, std::uint32_t b) { return place_of(a) < place_of(b); });
     }
 }
 

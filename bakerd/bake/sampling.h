@@ -21,6 +21,8 @@ class SampleTable {
   public:
     // REQUIRES: dimensions <= max_sample_dimensions.
     SampleTable(std::uint32_t count, std::uint32_t dimensions);
+    // Other points, point after point: so that samplers can be compared. REQUIRES: words.size() is a multiple of dimensions.
+    SampleTable(std::vector<std::uint32_t> words, std::uint32_t dimensions);
 
     [[nodiscard]] std::uint32_t count() const { return count_; }
     [[nodiscard]] std::span<const std::uint32_t> point(std::uint32_t n) const { return {&words_[std::size_t{n} * dimensions_], dimensions_}; }
@@ -33,6 +35,7 @@ class SampleTable {
 
   private:
     [[nodiscard]] std::uint64_t place_of(std::uint32_t n) const;
+    void put_side_by_side();
 
     std::uint32_t count_, dimensions_;
     std::vector<std::uint32_t> words_;  // fixed point, 32 bits after the point

@@ -27,7 +27,7 @@ bool mirrors(const glm::mat4x3& world_from_object) {
 // Terrain and the like is cut to what lies within reach and put into world space: its memory follows the reach too, and
 // rays near it need no transform. It must depend on the object alone: a hit's last digits are not the same either way.
 bool is_large(const map::Bounds& bounds) {
-    constexpr float side_m = 128;
+    constexpr float side_m = 96;
     return std::max(bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y) > side_m;
 }
 
@@ -169,6 +169,13 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
     Hit hit{query.best_distance, instance, set.primitive_index, set.triangle_of(r.hit.primID), r.hit.u, r.hit.v, front, normal, length};
     if (!front && !set.twins.empty() && set.twins[r.hit.primID].present()) turn_to_twin(set.twins[r.hit.primID], hit);
     return hit;
+}
+
+std::optional<Hit> Scene::beside(const Ray& ray) const {
+    constexpr float breadth = 0x1p-18f;  // radians: 2 mm at 512 m
+    const glm::vec3& d = ray.direction;
+    const glm::vec3 across = glm::cross(d, std::abs(d.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0));
+    return closest({ray.origin, glm::normalize(d + across * breadth), ray.far_m});
 }
 
 Surface Scene::surface(const Hit& hit, float footprint_m) const {

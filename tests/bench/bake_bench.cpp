@@ -3,13 +3,12 @@
 // Integration is single-threaded; `over_embree` is the time of the bake over that of Embree, measured in pairs.
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/sector_bake.h"
-#include "bakerd/map/import.h"
+#include "tests/bench/bench_world.h"
 #include "tests/bench/raw_embree.h"
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -33,8 +32,6 @@ struct Setup {
 
 std::optional<Setup> setup;
 
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 std::uint64_t integrate_all(bake::RayLog* log = nullptr) {
     const trace::FloatMode float_mode;
     std::uint64_t rays = 0;
@@ -46,15 +43,10 @@ std::uint64_t integrate_all(bake::RayLog* log = nullptr) {
 }
 
 bool prepare(const std::string& path) {
-    const std::size_t slash = path.rfind('/');
-    const std::vector<std::string> names = {path.substr(slash == std::string::npos ? 0 : slash + 1)};
-    auto map = map::import_map(names, map::folder_source(slash == std::string::npos ? "." : path.substr(0, slash)));
-    if (!map) {
-        std::fprintf(stderr, "bake_bench: %s\n", map.error().c_str());
-        return false;
-    }
+    auto world = open_world(path);
+    if (!world) return false;
     setup.emplace();
-    setup->world = bake::World::open(trace::Device::open().value(), std::make_shared<map::Map>(std::move(*map))).value();
+    setup->world = std::move(world);
     setup->sectors = setup->world->sectors_with_ground();
     const map::SectorCoordinate middle = setup->sectors[setup->sectors.size() / 2];
     bake::Settings few = setup->settings;

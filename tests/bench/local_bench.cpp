@@ -4,18 +4,16 @@
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/local_encoding.h"
 #include "bakerd/bake/sector_bake.h"
-#include "bakerd/map/import.h"
+#include "tests/bench/bench_world.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 namespace drtv::bench {
 namespace {
-
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // Of the numbers (receiver, source) those that matter.
 std::vector<std::pair<std::size_t, std::size_t>> strong_pairs(const bake::LocalLight& light, std::size_t receivers) {
@@ -49,17 +47,10 @@ double difference(const bake::LocalCoefficients& a, const bake::LocalCoefficient
 }
 
 int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
-    const std::size_t slash = path.rfind('/');
-    const std::vector<std::string> names = {path.substr(slash == std::string::npos ? 0 : slash + 1)};
-    auto map = map::import_map(names, map::folder_source(slash == std::string::npos ? "." : path.substr(0, slash)));
-    if (!map) {
-        std::fprintf(stderr, "local_bench: %s\n", map.error().c_str());
-        return 1;
-    }
     const trace::FloatMode float_mode;
-    const auto world = bake::World::open(trace::Device::open().value(), std::make_shared<map::Map>(std::move(*map))).value();
-    const auto& sectors = world->sectors_with_ground();
-    const map::SectorCoordinate at = chosen.value_or(sectors[sectors.size() / 2]);
+    const auto world = open_world(path);
+    if (!world) return 1;
+    const map::SectorCoordinate at = chosen.value_or(middle_sector(*world));
     bake::Settings settings = bake::preset("pc").value();
     const auto scene = world->scene_for(at, bake::scene_distance_m(settings));
     std::vector<std::shared_ptr<const bake::Placed>> around;

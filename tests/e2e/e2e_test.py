@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """End to end with the real daemon, worker and client: e2e_test.py --bin DIR --data SHARED_DATA CASE"""
 import argparse
+import base64
 import csv
 import json
 import os
 import signal
+import struct
 import sys
 import time
 import unittest
@@ -30,6 +32,29 @@ def world_translation(nodes, number):
         point = tuple(a + b for a, b in zip(turned, node.get("translation", (0, 0, 0))))
         number = next((n for n, parent in enumerate(nodes) if number in parent.get("children", [])), None)
     return point
+
+
+def write_map(path, **quads):
+    """A glTF file with a node of that name for each quad: four corners in world axes, counter-clockwise seen from the front."""
+    data = b"".join(struct.pack("<3f", x, z, -y) for quad in quads.values() for x, y, z in quad) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    vertices = {"buffer": 0, "byteOffset": 0, "byteLength": 48 * len(quads)}
+    indices = {"buffer": 0, "byteOffset": 48 * len(quads), "byteLength": 12}
+    corners = [{"bufferView": 0, "byteOffset": 48 * n, "componentType": 5126, "type": "VEC3", "count": 4} for n in range(len(quads))]
+    material = {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]}}
+    document = {"asset": {"version": "2.0"}, "materials": [material],
+                "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+                "bufferViews": [vertices, indices],
+                "accessors": [{"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 6}, *corners],
+                "meshes": [{"primitives": [{"attributes": {"POSITION": 1 + n}, "indices": 0, "material": 0}]} for n in range(len(quads))],
+                "nodes": [{"name": name, "mesh": n} for n, name in enumerate(quads)], "scene": 0, "scenes": [{"nodes": list(range(len(quads)))}]}
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(document, file)
+    return path
+
+
+# In one sector, with a wall in its north; the wall's other side comes by turning the order round.
+LAWN = [(1, 1, 0), (31, 1, 0), (31, 31, 0), (1, 31, 0)]
+WALL = [(1, 30, 0), (31, 30, 0), (31, 30, 16), (1, 30, 16)]
 
 
 def has_ended(pid):
@@ -116,6 +141,66 @@ class Baking(FarmTest):
             json.dump(document, file)
         job = json.loads(self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS).stdout)
         self.assertEqual(job["sectors_cached"], job["sectors_total"])
+
+
+    def dumps(self, daemon, *arguments, name="pulled"):
+        """Of a bake's sectors, with any probes in them."""
+        files = self.pulled(daemon, *arguments, name=name)
+        dumps = [json.loads(self.farm.run("drtv", "dump", os.path.join(self.farm.path(name), file), "--json").stdout) for file in files]
+        return [dump for dump in dumps if dump["probes"]]
+
+    def test_wall_seen_from_behind_is_told_by_its_name(self):
+        daemon = self.farm.daemon()
+        warning = r"^bake: warning: sector \(0, 0\): \d+ % of its rays meet surfaces from behind, most of them those of 'garden wall'"
+        turned = write_map(self.farm.path("turned.gltf"), **{"lawn": LAWN, "garden wall": WALL[::-1], "hatch": [(30, 1, 0), (30, 1.5, 0), (30, 1.5, 1), (30, 1, 1)]})
+        for arguments in (["submit", turned, *FEW_RAYS, "--wait"], ["watch", "1"]):
+            done = self.farm.bake(daemon, *arguments)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stderr, warning)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        right = write_map(self.farm.path("right.gltf"), **{"lawn": LAWN, "garden wall": WALL})
+        done = self.farm.bake(daemon, "submit", right, *FEW_RAYS, "--wait")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_warning_of_an_odd_name_is_one_line(self):
+        daemon = self.farm.daemon()
+        turned = write_map(self.farm.path("turned.gltf"), **{"lawn": LAWN, "garden\nwall\x1b[2J": WALL[::-1]})
+        done = self.farm.bake(daemon, "submit", turned, *FEW_RAYS, "--wait")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertNotIn("\x1b", done.stderr)
+
+    def test_pc_preset_brings_local_transfer(self):
+        daemon = self.farm.daemon()
+        lawn = write_map(self.farm.path("lawn.gltf"), lawn=LAWN, wall=WALL)
+        (dump,) = self.dumps(daemon, lawn, "--preset", "pc", "--set", "lprt_rays=64", "--set", "rays=256")
+        self.assertGreater(len(dump["probes"]), 3)
+        for probe in dump["probes"]:
+            self.assertIn("local", probe)
+        self.assertTrue(any(probe["local"] for probe in dump["probes"]))
+        self.assertEqual((dump["convergence"]["local_bounces"], dump["convergence"]["local_rays"]), (2, 64))
+        self.assertGreater(dump["convergence"]["local_transfer_rays"], 0)
+        (dump,) = self.dumps(daemon, lawn, "--preset", "console", "--set", "rays=256", name="console")
+        self.assertFalse(any("local" in probe for probe in dump["probes"]))
+
+    def test_error_asked_for_ends_the_paths_within_the_budget(self):
+        daemon = self.farm.daemon()
+        lawn = write_map(self.farm.path("lawn.gltf"), lawn=LAWN, wall=WALL)
+        (dump,) = self.dumps(daemon, lawn, "--set", "error=0.02", "--set", "rays=4096")
+        convergence = dump["convergence"]
+        self.assertAlmostEqual(convergence["error_asked"], 0.02, places=6)
+        self.assertGreaterEqual(convergence["paths_least"], 256)
+        self.assertLessEqual(convergence["paths_least"], convergence["paths_most"])
+        self.assertLessEqual(convergence["paths_most"], 4096)
+        if convergence["paths_most"] < 4096:
+            self.assertLessEqual(convergence["error_max"], 0.02)
+        # A fifth of the error takes more.
+        (finer,) = self.dumps(daemon, lawn, "--set", "error=0.004", "--set", "rays=4096", name="finer")
+        self.assertGreater(finer["convergence"]["paths_most"], convergence["paths_least"])
+        self.assertLess(finer["convergence"]["error_median"], convergence["error_median"])
+        # And without it all of the budget is used.
+        (plain,) = self.dumps(daemon, lawn, "--set", "rays=1024", name="plain")
+        self.assertEqual([plain["convergence"][key] for key in ("error_asked", "paths_least", "paths_most")], [0, 1024, 1024])
 
 
 class Determinism(FarmTest):

@@ -90,6 +90,7 @@ TEST_F(DatabaseTest, AReopenedFileHasAllOfIt) {
     EXPECT_EQ(read->failed_attempts, 2);
     EXPECT_EQ(read->result.result, task.result.result);
     EXPECT_EQ(std::tuple(read->result.size_bytes, read->result.probes, read->result.rays), std::tuple(100, 10, 1LL << 40));
+    EXPECT_EQ(read->result.warnings, task.result.warnings);
     EXPECT_EQ(read->error, task.error);
 
     const auto summary = database->map(digest_of("map")).value();
@@ -122,6 +123,37 @@ TEST_F(DatabaseTest, TasksOfAJobComeByRowThenColumnInPages) {
     EXPECT_EQ(database->job_counts(77)->total, 0);
     EXPECT_TRUE(database->job_task(job.id, {0, 0}).value());
     EXPECT_FALSE(database->job_task(other.id, {0, 0}).value());
+}
+
+TEST_F(DatabaseTest, WarningsFollowTheirTask) {
+    TaskRow none = add_task(0, 0);
+    none.result.warnings.clear();
+    ASSERT_TRUE(database->update_task(none));
+    TaskRow task = add_task(1, 0);
+    task.result.warnings = {"50 % of its rays, say 'no' to \"quotes\"; DROP TABLE task"};
+    ASSERT_TRUE(database->update_task(task));
+    reopen();
+    EXPECT_TRUE(database->task_by_key(none.key).value()->result.warnings.empty());
+    EXPECT_EQ(database->task_by_key(task.key).value()->result.warnings, task.result.warnings);
+}
+
+TEST_F(DatabaseTest, WarningsOfAJobComeByRowThenColumn) {
+    const JobRow job = add_job(), other = add_job();
+    const auto add = [&](std::int32_t i, std::int32_t j, std::vector<std::string> warnings) {
+        TaskRow task = add_task(i, j, TaskState::done);
+        task.result.warnings = std::move(warnings);
+        EXPECT_TRUE(database->update_task(task));
+        return task.id;
+    };
+    for (const std::int64_t task : {add(5, 1, {"f"}), add(-2, 0, {"b", "c"}), add(7, -1, {"a"}), add(3, 0, {}), add(4, 0, {"d"}), add(0, 1, {"e"})}) ASSERT_TRUE(database->add_job_task(job.id, task));
+    ASSERT_TRUE(database->add_job_task(other.id, add(0, 0, {"of another job"})));
+    using Sentences = std::vector<std::string>;
+    EXPECT_EQ(database->job_warnings(job.id, 20).value(), (Sentences{"a", "b", "c", "d", "e", "f"}));
+    EXPECT_EQ(database->job_warnings(job.id, 4).value(), (Sentences{"a", "b", "c", "d"}));
+    EXPECT_EQ(database->job_warnings(job.id, 2).value(), (Sentences{"a", "b"}));
+    EXPECT_EQ(database->job_warnings(job.id, 0).value(), Sentences{});
+    EXPECT_EQ(database->job_warnings(other.id, 20).value(), Sentences{"of another job"});
+    EXPECT_EQ(database->job_warnings(77, 20).value(), Sentences{});
 }
 
 TEST_F(DatabaseTest, ATransactionThatFailsLeavesNothing) {
@@ -171,6 +203,98 @@ TEST_F(DatabaseTest, ANewerSchemaIsRefusedAndLeftAlone) {
         EXPECT_EQ(opened.error().code, ErrorCode::failed_precondition);
         EXPECT_NE(opened.error().message.find("999"), std::string::npos) << opened.error().message;
     }
+}
+
+// A file as the first schema left it: no warnings, and settings of four values.
+class FirstSchema : public DatabaseTest {
+  protected:
+    FirstSchema() {
+        database.reset();
+        std::filesystem::remove(path);
+        execute(R"sql(
+PRAGMA journal_mode=WAL;
+CREATE TABLE map (manifest TEXT PRIMARY KEY, summary TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE job (
+  id INTEGER PRIMARY KEY AUTOINCREMENT, request_id TEXT UNIQUE, manifest TEXT NOT NULL, preset TEXT NOT NULL,
+  settings TEXT NOT NULL, overrides TEXT NOT NULL, region TEXT NOT NULL, state INTEGER NOT NULL, error TEXT NOT NULL,
+  sectors_cached INTEGER NOT NULL, created INTEGER NOT NULL, ended INTEGER NOT NULL);
+CREATE TABLE task (
+  id INTEGER PRIMARY KEY, key TEXT UNIQUE NOT NULL, manifest TEXT NOT NULL, i INTEGER NOT NULL, j INTEGER NOT NULL,
+  settings TEXT NOT NULL, state INTEGER NOT NULL, failed_attempts INTEGER NOT NULL, result TEXT NOT NULL,
+  size INTEGER NOT NULL, probes INTEGER NOT NULL, rays INTEGER NOT NULL, error TEXT NOT NULL);
+CREATE TABLE job_task (job INTEGER NOT NULL, task INTEGER NOT NULL, PRIMARY KEY (job, task)) WITHOUT ROWID;
+PRAGMA user_version=1;
+)sql");
+        const std::string map = to_hex(digest_of("map")), settings = R"({"bounces":2,"min_distance":7.0,"rays":99,"reach":64.0})";
+        execute("INSERT INTO map VALUES ('" + map + R"(', '{"id":0,"content":")" + to_hex(digest_of("content")) + R"(","objects":3,"sectors":[[1,2]],"triangles":4,"warnings":["warned"]}'))");
+        execute("INSERT INTO job VALUES (5, 'request', '" + map + "', 'draft', '" + settings + R"(', '{"rays":"99"}', '[0,0,1,1]', 0, '', 4, 1000, 0))");
+        execute("INSERT INTO task VALUES (8, '" + to_hex(digest_of("baked")) + "', '" + map + "', -3, 5, '" + settings + "', 1, 2, '" + to_hex(digest_of("result")) + "', 100, 10, 1099511627776, '')");
+        execute("INSERT INTO task VALUES (9, '" + to_hex(digest_of("waiting")) + "', '" + map + "', -2, 5, '" + settings + "', 0, 0, '', 0, 0, 0, '')");
+        execute("INSERT INTO job_task VALUES (5, 8), (5, 9)");
+    }
+
+    void execute(const std::string& sql) const {
+        sqlite3* handle = nullptr;
+        ASSERT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
+        EXPECT_EQ(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(handle);
+        sqlite3_close(handle);
+    }
+};
+
+TEST_F(FirstSchema, OpensWithAllItsRows) {
+    // Once as it was and once as the first opening left it.
+    for (int n = 0; n < 2; ++n) {
+        reopen();
+        const auto jobs = database->jobs().value();
+        ASSERT_EQ(jobs.size(), 1u);
+        EXPECT_EQ(jobs[0].id, 5);
+        EXPECT_EQ(jobs[0].request_id, "request");
+        EXPECT_EQ(jobs[0].manifest, digest_of("map"));
+        EXPECT_EQ(std::tuple(jobs[0].preset, jobs[0].overrides, jobs[0].region), std::tuple("draft", R"({"rays":"99"})", "[0,0,1,1]"));
+        EXPECT_EQ(jobs[0].state, JobState::running);
+        EXPECT_EQ(std::tuple(jobs[0].sectors_cached, jobs[0].created_seconds, jobs[0].ended_seconds), std::tuple(4, 1000, 0));
+
+        const auto tasks = database->job_tasks(5).value();
+        ASSERT_EQ(tasks.size(), 2u);
+        EXPECT_EQ(tasks[0].key, digest_of("baked"));
+        EXPECT_EQ(tasks[0].sector, (map::SectorCoordinate{-3, 5}));
+        EXPECT_EQ(tasks[0].state, TaskState::done);
+        EXPECT_EQ(tasks[0].failed_attempts, 2);
+        EXPECT_EQ(tasks[0].result.result, digest_of("result"));
+        EXPECT_EQ(std::tuple(tasks[0].result.size_bytes, tasks[0].result.probes, tasks[0].result.rays), std::tuple(100, 10, 1LL << 40));
+        EXPECT_TRUE(tasks[0].result.warnings.empty());
+        EXPECT_EQ(tasks[1].key, digest_of("waiting"));
+        EXPECT_EQ(tasks[1].state, TaskState::pending);
+        EXPECT_TRUE(database->job_warnings(5, 20)->empty());
+        EXPECT_EQ(database->map(digest_of("map")).value()->warnings, std::vector<std::string>{"warned"});
+    }
+}
+
+// What still waits is baked under the key of its settings: they must be the ones that it was asked with.
+TEST_F(FirstSchema, RowsKeepTheirSettings) {
+    reopen();
+    bake::Settings asked;
+    asked.rays = 99;
+    asked.bounces = 2;
+    asked.reach_m = 64;
+    asked.min_distance_m = 7;
+    EXPECT_EQ(database->jobs().value().at(0).settings, asked);
+    const auto tasks = database->job_tasks(5).value();
+    ASSERT_EQ(tasks.size(), 2u);
+    for (const TaskRow& task : tasks) EXPECT_EQ(task.settings, asked);
+}
+
+TEST_F(FirstSchema, TakesWarningsOnceOpened) {
+    reopen();
+    TaskRow task = *database->task_by_key(digest_of("waiting")).value();
+    task.state = TaskState::done;
+    task.result.warnings = {"one", "two"};
+    ASSERT_TRUE(database->update_task(task));
+    TaskRow fresh = add_task(0, 0);
+    reopen();
+    EXPECT_EQ(database->task_by_key(digest_of("waiting")).value()->result.warnings, (std::vector<std::string>{"one", "two"}));
+    EXPECT_EQ(database->task_by_key(fresh.key).value()->result.warnings, (std::vector<std::string>{"one", "two"}));
+    EXPECT_EQ(database->job_warnings(5, 20).value(), (std::vector<std::string>{"one", "two"}));
 }
 
 TEST(Database, AFileThatIsNoDatabaseOrCannotBeMadeIsASentence) {

@@ -95,6 +95,7 @@ TEST(ContentDigest, ChangesWithAllThatABakeSees) {
              b.json["materials"][1]["emissiveTexture"]["extensions"]["KHR_texture_transform"]["rotation"] = 0.5;
          }},
         {"transmission", [](auto& b) { b.json["materials"][1]["extensions"]["KHR_materials_diffuse_transmission"]["diffuseTransmissionFactor"] = 0.5; }},
+        {"more transmission", [](auto& b) { b.json["materials"][1]["extensions"]["KHR_materials_diffuse_transmission"]["diffuseTransmissionFactor"] = 0.75; }},
         {"transmission's colour", [](auto& b) { b.json["materials"][1]["extensions"]["KHR_materials_diffuse_transmission"] = {{"diffuseTransmissionFactor", 0.5}, {"diffuseTransmissionColorFactor", {1, 0.5, 1}}}; }},
         {"a texel", [](auto& b) { b.json["images"][0]["bufferView"] = b.add_view(png_of({2, 1, {201, 10, 10, 255, 10, 200, 10, 0}})); }},
         {"a texel's alpha", [](auto& b) { b.json["images"][0]["bufferView"] = b.add_view(png_of({2, 1, {200, 10, 10, 255, 10, 200, 10, 1}})); }},

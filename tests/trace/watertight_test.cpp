@@ -5,17 +5,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 namespace drtv::test {
 namespace {
 
-constexpr int rays_a_shape = 250000;
+// A soak sets DRTV_LEAK_RAYS, see CONTRIBUTING.
+int rays_a_shape() {
+    const char* asked = std::getenv("DRTV_LEAK_RAYS");
+    return asked == nullptr ? 250000 : std::atoi(asked);
+}
 
-// Embree 3.13's robust test gives a shared edge one sign for both triangles, but the edges around a vertex are
-// rounded each by itself: of a million rays aimed exactly at vertices a few pass. A ray that is not aimed comes
-// that near to a vertex once in some 10^12.
-constexpr int most_through_vertices = 4;
+// Of rays aimed exactly at vertices a few pass (Scene::beside says why): a share of them all.
+constexpr double most_through_vertices = 2e-5;
 
 // n x n squares a side, corners shared.
 Shape tessellated_box(std::uint32_t n) {
@@ -68,8 +71,9 @@ void expect_closed(const Shape& shape, bool turned, unsigned seed) {
     if (turned) thing.world_from_shape = random_placement(random, 100, seed % 2 == 1);
     const auto scene = scene_of(std::vector<Thing>{thing});
     const trace::FloatMode mode;
-    int through_edges = 0, through_vertices = 0;
-    for (int n = 0; n < rays_a_shape; ++n) {
+    int through_edges = 0, through_vertices = 0, through_both = 0;
+    const int rays = rays_a_shape();
+    for (int n = 0; n < rays; ++n) {
         const std::size_t t = random() % (shape.indices.size() / 3) * 3;
         const glm::vec3 a = shape.positions[shape.indices[t + random() % 3]], b = shape.positions[shape.indices[t + random() % 3]];
         const glm::vec3 target = a == b ? a : a + (b - a) * between(random, 0.01f, 0.99f);  // a vertex or a point of an edge
@@ -78,10 +82,12 @@ void expect_closed(const Shape& shape, bool turned, unsigned seed) {
         const trace::Ray ray{from, glm::normalize(to - from), 1000};
         const bool closed = scene->closest(ray).has_value();
         EXPECT_EQ(scene->occluded(ray), closed);
+        through_both += closed || scene->beside(ray) ? 0 : 1;
         (a == b ? through_vertices : through_edges) += closed ? 0 : 1;
     }
     EXPECT_EQ(through_edges, 0);
-    EXPECT_LE(through_vertices, most_through_vertices);
+    EXPECT_LE(through_vertices, most_through_vertices * rays) << "of " << rays << " rays";
+    EXPECT_EQ(through_both, 0);
 }
 
 TEST(Watertight, BoxHoldsRaysAtItsEdgesAndCorners) {
