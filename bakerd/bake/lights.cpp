@@ -169,14 +169,15 @@ std::int32_t LightTree::build(std::span<Node> leaves, std::int32_t parent) {
 }
 
 float LightTree::share_of_left(const Node& node, const glm::vec3& from) const {
-    const auto importance = [&](std::int32_t n) {
-        const Node& child = nodes_[static_cast<std::size_t>(n)];
+    const Node& left = nodes_[static_cast<std::size_t>(node.left)];
+    const Node& right = nodes_[static_cast<std::size_t>(node.right)];
+    const auto square = [&](const Node& child) {
         const glm::vec3 d = child.centre - from;
-        return child.power / std::max({glm::dot(d, d), child.radius_m * child.radius_m, least_light_distance_m * least_light_distance_m});
+        return std::max({glm::dot(d, d), child.radius_m * child.radius_m, least_light_distance_m * least_light_distance_m});
     };
-    const float left = importance(node.left), right = importance(node.right);
+    const float of_left = left.power * square(right), of_right = right.power * square(left);
     // Never quite 0 or 1: no light is left out.
-    return std::clamp(left / (left + right), 0.01f, 0.99f);
+    return std::clamp(of_left / (of_left + of_right), 0.01f, 0.99f);
 }
 
 LightTree::Drawn LightTree::draw(const glm::vec3& from, double u, const Roulette& roulette) const {
@@ -185,12 +186,16 @@ LightTree::Drawn LightTree::draw(const glm::vec3& from, double u, const Roulette
     const Node* node = nodes_.data();
     for (;;) {
         // Given up as soon as the rest of the tree cannot matter.
-        const float distance_m = std::max(glm::length(node->centre - from) - node->radius_m, least_light_distance_m);
-        const float most = node->power / (distance_m * distance_m * drawn.probability);
-        if (most < drawn.survival * roulette.faint) drawn.survival = most / roulette.faint;
-        if (roulette.number >= drawn.survival) {
-            drawn.probability = 0;
-            return drawn;
+        const glm::vec3 way = node->centre - from;
+        const float squared = glm::dot(way, way);
+        if (squared > node->radius_m * node->radius_m) {
+            const float distance_m = std::max(std::sqrt(squared) - node->radius_m, least_light_distance_m);
+            const float scaled = roulette.faint * distance_m * distance_m * drawn.probability;
+            if (node->power < drawn.survival * scaled) drawn.survival = node->power / scaled;
+            if (roulette.number >= drawn.survival) {
+                drawn.probability = 0;
+                return drawn;
+            }
         }
         if (node->left < 0) break;
         const double share = share_of_left(*node, from);

@@ -31,6 +31,7 @@ bake::Settings settings_from(const Json& json) {
     s.bounces = integer<std::uint32_t>(json.at("bounces"));
     s.reach_m = json.at("reach").get<float>();
     s.min_distance_m = json.at("min_distance").get<float>();
+    if (!json.contains("error")) return s;  // written before there were the others
     s.error = json.at("error").get<float>();
     s.local_transfer = json.at("lprt").get<bool>();
     s.local_bounces = integer<std::uint32_t>(json.at("lprt_bounces"));

@@ -4,6 +4,7 @@
 #include "bakerd/map/gltf_document.h"
 #include "bakerd/map/map.h"
 
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -29,13 +30,14 @@ struct Shared {
     };
     std::unordered_map<Digest, std::uint32_t, HashDigest> textures, materials, meshes;
     std::unordered_map<std::uint32_t, glm::vec3> brightest;  // by texture
+    std::set<std::string> warned_of_brightness;              // file and material
 };
 
 // One line of sensible length, whatever stands in the names that the file gave.
 [[nodiscard]] std::string as_sentence(std::string text);
 
 // Adds a warning to the map, once.
-void warn(Map& map, const std::string& sentence);
+void warn(Map& map, const std::string& text);
 
 // "material 3 ('wall')".
 [[nodiscard]] std::string name_of_material(const GltfDocument& document, std::size_t material);

@@ -91,9 +91,10 @@ class MaterialImporter {
         Coverage coverage = Coverage::whole;
         float cutoff = 0;
         if (material.alpha_mode == AlphaMode::blend) coverage = Coverage::alpha;
-        if (material.alpha_mode == AlphaMode::mask && material.base_colour.w > 0) {
+        if (material.alpha_mode == AlphaMode::mask) {
+            constexpr float nowhere = 2;  // no texel has that alpha
             coverage = Coverage::cutoff;
-            cutoff = material.alpha_cutoff / material.base_colour.w;
+            cutoff = material.base_colour.w > 0 ? material.alpha_cutoff / material.base_colour.w : material.alpha_cutoff > 0 ? nowhere : 0;
         }
         return read_view(pbr.baseColorTexture, coverage, cutoff, material.base_texture);
     }
@@ -106,6 +107,7 @@ class MaterialImporter {
         for (std::size_t k = 0; k < 3 && k < source.emissiveFactor.size(); ++k) {
             const double factor = source.emissiveFactor[k];
             if (!(factor >= 0 && factor <= max_emission)) return fail(fmt::format("emissiveFactor {} lies outside [0, {}]", factor, max_emission));
+            if (!(factor * strength <= max_emission)) return fail(fmt::format("emissiveFactor {} x emissiveStrength {} is over {} nits", factor, strength, max_emission));
             material.emission[static_cast<glm::length_t>(k)] = static_cast<float>(factor * strength);
         }
         if (material.emission == glm::vec3(0)) return {};  // then the picture shines nowhere
@@ -204,9 +206,10 @@ std::vector<bool> worn_materials(const tinygltf::Model& model) {
 
 }  // namespace
 
-void warn(Map& map, const std::string& sentence) {
+void warn(Map& map, const std::string& text) {
     constexpr std::size_t most = 100;  // more, nobody reads
-    if (map.warnings.size() < most && std::ranges::find(map.warnings, sentence) == map.warnings.end()) map.warnings.push_back(as_sentence(sentence));
+    const std::string sentence = as_sentence(text);
+    if (map.warnings.size() < most && std::ranges::find(map.warnings, sentence) == map.warnings.end()) map.warnings.push_back(sentence);
 }
 
 std::string name_of_material(const GltfDocument& document, std::size_t material) {

@@ -156,7 +156,10 @@ void warn_of_brightness(const GltfDocument& document, int gltf_material, const P
         if (added) entry->second = brightest(map.textures[material.base_texture.texture]);
         albedo *= entry->second;
     }
-    if (too_bright()) warn(map, document.at(fmt::format("{}: its albedo reaches {:.3g}, and counts as {}", name_of_material(document, static_cast<std::size_t>(gltf_material)), std::max({albedo.x, albedo.y, albedo.z}), max_albedo)));
+    if (!too_bright()) return;
+    const std::string where = document.at(name_of_material(document, static_cast<std::size_t>(gltf_material)));
+    if (!shared.warned_of_brightness.insert(where).second) return;
+    warn(map, fmt::format("{}: its albedo reaches {:.3g}, and counts as {}", where, std::max({albedo.x, albedo.y, albedo.z}), max_albedo));
 }
 
 }  // namespace

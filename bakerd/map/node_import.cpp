@@ -194,7 +194,7 @@ class NodeImporter {
         object.mesh = mesh;
         object.role = pending.role == NodeRole::vegetation ? Role::vegetation : Role::fixed;
         object.world_from_object = glm::mat4x3(glm::dmat4x3(world_from_object));
-        object.name = std::move(name);
+        object.name = as_sentence(std::move(name));  // it is shown to people
         const double volume = std::abs(glm::determinant(glm::dmat3(world_from_object)));
         const double side = std::max({glm::length(glm::dvec3(world_from_object[0])), glm::length(glm::dvec3(world_from_object[1])), glm::length(glm::dvec3(world_from_object[2]))});
         if (volume <= 1e-9 * side * side * side) {

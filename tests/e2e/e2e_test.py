@@ -152,7 +152,7 @@ class Baking(FarmTest):
     def test_wall_seen_from_behind_is_told_by_its_name(self):
         daemon = self.farm.daemon()
         warning = r"^bake: warning: sector \(0, 0\): \d+ % of its rays meet surfaces from behind, most of them those of 'garden wall'"
-        turned = write_map(self.farm.path("turned.gltf"), **{"lawn": LAWN, "garden wall": WALL[::-1], "hatch": [(30, 1, 0), (30, 1.5, 0), (30, 1.5, 1), (30, 1, 1)]})
+        turned = write_map(self.farm.path("turned.gltf"), **{"lawn": LAWN, "garden wall": WALL[::-1], "hatch": [(30, 1, 0), (30, 5, 0), (30, 5, 3), (30, 1, 3)]})
         for arguments in (["submit", turned, *FEW_RAYS, "--wait"], ["watch", "1"]):
             done = self.farm.bake(daemon, *arguments)
             self.assertEqual(done.returncode, 0, done.stderr)

@@ -145,7 +145,7 @@ TEST_F(DatabaseTest, WarningsOfAJobComeByRowThenColumn) {
         EXPECT_TRUE(database->update_task(task));
         return task.id;
     };
-    for (const std::int64_t task : {add(5, 1, {"f"}), add(-2, 0, {"b", "c"}), add(7, -1, {"a"}), add(3, 0, {}), add(4, 0, {"d"}), add(0, 1, {"e"})}) ASSERT_TRUE(database->add_job_task(job.id, task));
+    for (const std::int64_t task : {add(5, 1, {"f"}), add(-2, 0, {"b", "c"}), add(7, -1, {"a"}), add(3, -2, {}), add(4, 0, {"d"}), add(0, 1, {"e"})}) ASSERT_TRUE(database->add_job_task(job.id, task));
     ASSERT_TRUE(database->add_job_task(other.id, add(0, 0, {"of another job"})));
     using Sentences = std::vector<std::string>;
     EXPECT_EQ(database->job_warnings(job.id, 20).value(), (Sentences{"a", "b", "c", "d", "e", "f"}));

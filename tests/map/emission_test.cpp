@@ -67,6 +67,14 @@ TEST(Emission, OutOfRangeIsRefused) {
     }
 }
 
+// Each within its range, both together over what a sector can hold.
+TEST(Emission, OutOfRangeTogetherIsRefused) {
+    Lamp lamp;
+    lamp.json["emissiveFactor"] = {0, 1e12, 0};
+    lamp.set_strength(1e12);
+    expect_refused(lamp.import(), {"map.gltf", "material 0 ('lamp')"});
+}
+
 TEST(Emission, OfTheWrongTypeIsRefused) {
     Lamp lamp;
     lamp.set_strength("bright");
