@@ -40,6 +40,7 @@ const std::array<float, 256> linear_from_srgb = make_linear_from_srgb();
 
 std::uint32_t wrapped(std::int64_t texel, std::uint32_t size, Wrap wrap) {
     const auto n = static_cast<std::int64_t>(size);
+    if (texel >= 0 && texel < n) return static_cast<std::uint32_t>(texel);  // nearly always, and division is slow
     if (wrap == Wrap::clamp) return static_cast<std::uint32_t>(texel < 0 ? 0 : texel >= n ? n - 1 : texel);
     const std::int64_t period = wrap == Wrap::mirror ? 2 * n : n;
     std::int64_t r = texel % period;
@@ -245,6 +246,10 @@ glm::vec3 sample_filtered(const Texture& texture, glm::vec2 uv, std::uint32_t le
     // Where hardly anything is there, the little colour left has no digits.
     if (sum.w < 64) return glm::vec3(sample(texture, uv));
     return glm::vec3(sum) / sum.w;
+}
+
+float sample_alpha(const Texture& texture, glm::vec2 uv) {
+    return mixed(bilinear(texture, texture.width, texture.height, uv), [&](std::uint32_t x, std::uint32_t y) { return static_cast<float>(texture.rgba[(std::size_t{y} * texture.width + x) * 4 + 3]) / 255.0f; });
 }
 
 glm::vec4 sample(const Texture& texture, glm::vec2 uv) {

@@ -28,6 +28,9 @@ inline constexpr std::uint32_t alpha_block_texels = 8;  // along each side
 // one texel of that level. Level 0 is the picture itself. Any uv is safe.
 [[nodiscard]] glm::vec3 sample_filtered(const Texture& texture, glm::vec2 uv, std::uint32_t level);
 
+// The alpha of `sample`, without its colour.
+[[nodiscard]] float sample_alpha(const Texture& texture, glm::vec2 uv);
+
 // Bilinear sample at uv: linear colour, alpha in w. Any uv is safe.
 [[nodiscard]] glm::vec4 sample(const Texture& texture, glm::vec2 uv);
 

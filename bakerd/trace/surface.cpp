@@ -58,7 +58,7 @@ float alpha_at(const map::Map& map, const map::Primitive& primitive, std::uint32
     const glm::uvec3& t = primitive.triangles[triangle];
     float alpha = material.base_colour.w;
     if (!primitive.colours.empty()) alpha *= interpolate(primitive.colours, t, u, v).w;
-    if (material.base_texture.present()) alpha *= map::sample(map.textures[material.base_texture.texture], viewed(material.base_texture, interpolate(primitive.uvs, t, u, v))).w;
+    if (material.base_texture.present()) alpha *= map::sample_alpha(map.textures[material.base_texture.texture], viewed(material.base_texture, interpolate(primitive.uvs, t, u, v)));
     return alpha;
 }
 

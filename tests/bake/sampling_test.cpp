@@ -84,5 +84,33 @@ TEST(Directions, AzimuthAgreesWithTheLibraryToSevenDigits) {
     }
 }
 
+// Parts of 256, 512, ... are whole, and in each a run of 16 lies in one square of the first two dimensions, shifted or not.
+TEST(SampleTable, OrderPutsNeighboursSideBySide) {
+    constexpr std::uint32_t total = 2048;
+    const SampleTable samples(total, 4);
+    const auto order = samples.side_by_side();
+    ASSERT_EQ(order.size(), total);
+    std::vector<bool> seen(total, false);
+    for (std::uint32_t from = 0, to = SampleTable::first_part; from < total; from = to, to *= 2) {
+        for (std::uint32_t at = from; at < to; ++at) {
+            EXPECT_GE(order[at], from);
+            EXPECT_LT(order[at], to);
+            EXPECT_FALSE(seen[order[at]]);
+            seen[order[at]] = true;
+        }
+        const std::uint32_t points = to - from;
+        std::uint32_t side_bits = 0;  // squares of which each holds 16 points
+        while ((16u << 2 * (side_bits + 1)) <= points) ++side_bits;
+        for (std::uint32_t first = from; first < to; first += points >> (2 * side_bits)) {
+            for (const std::uint32_t shift : {0u, 0xA5C3F096u}) {
+                for (std::size_t d = 0; d < 2 && side_bits > 0; ++d) {
+                    const std::uint32_t square = (samples.point(order[first])[d] ^ shift) >> (32 - side_bits);
+                    for (std::uint32_t k = 1; k < points >> (2 * side_bits); ++k) EXPECT_EQ((samples.point(order[first + k])[d] ^ shift) >> (32 - side_bits), square);
+                }
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace drtv::bake

@@ -236,5 +236,18 @@ TEST(Brightest, CountsOnlyTexelsThatAreThere) {
     expect_near(map::brightest(texture_of(3, 1, rgba, Coverage::cutoff, 1)), {0, 0, 0});
 }
 
+TEST(SampleAlpha, IsTheAlphaOfTheSample) {
+    std::mt19937 random(17);
+    std::uniform_real_distribution<float> uv(-3, 3);
+    Texture texture = noise(random, 7, 12, Coverage::alpha, 0);
+    for (const Wrap wrap : wraps) {
+        texture.wrap_u = texture.wrap_v = wrap;
+        for (int n = 0; n < 2000; ++n) {
+            const glm::vec2 at(uv(random), uv(random));
+            ASSERT_EQ(map::sample_alpha(texture, at), map::sample(texture, at).w) << at.x << " " << at.y;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace drtv::test
