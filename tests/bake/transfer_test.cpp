@@ -30,6 +30,27 @@ TEST(Transfer, EndlessWallSeesHalfTheSky) {
     }
 }
 
+// Ground and a wall that meet at right angles see half the sky and half of each other wherever on them: all bounces are known.
+TEST(Transfer, EndlessCornerIsTheGeometricSeries) {
+    constexpr double albedo = 0.8;
+    for (const std::uint32_t bounces : {1u, 2u, 4u}) {
+        GltfBuilder b;
+        const int grey = b.add_material({.colour = {albedo, albedo, albedo, 1}});
+        b.place(quad({0, 0, 3000}, {0, 0, -3000}, {0, 3000, -3000}, {0, 3000, 3000}), "", grey);
+        b.place(quad({0, 0, -3000}, {0, 0, 3000}, {3000, 0, 3000}, {3000, 0, -3000}), "", grey);
+        const auto world = open_world(b);
+        const bake::ProbeLight light = light_at(*world, {2, 0, 1}, 8192, bounces);
+        double radiance = 0;
+        for (std::uint32_t k = 0; k < bounces; ++k) radiance = albedo * (0.5 + radiance / 2);
+        // All of the lobe that looks down; of a lobe towards +x with half of the sky in view, what is not sky.
+        EXPECT_NEAR(under_constant_sky(light, 0, 3), radiance, sampling * radiance) << bounces;
+        for (std::size_t basis = 0; basis < 3; ++basis) {
+            const double sky = static_cast<double>(light.sky_visibility[basis]) * upper_share(basis);
+            EXPECT_NEAR(under_constant_sky(light, 0, basis), radiance * (1 - sky), sampling * radiance + horizon_strip) << bounces << " " << basis;
+        }
+    }
+}
+
 // What a disk on the axis hides of a lobe around b, when all of it lies above b's horizon: b.z sin^2 of its half angle.
 TEST(Transfer, DiskOverheadHidesItsFormFactor) {
     for (const double radius : {0.5, 1.0, 1.3}) {
