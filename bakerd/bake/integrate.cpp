@@ -66,6 +66,9 @@ struct Block {
 
 constexpr std::uint32_t numbers_a_light = 3;
 
+// With fewer, what one path in some hundreds finds is too often not found at all, and its error neither.
+constexpr std::uint32_t least_paths = 1024;
+
 // What adds less than this to a path's static light, W/m2, is looked at only so often, and then counts as this much: in
 // the mean of some 1,000 paths it does not show. So lamps far away cost nothing.
 constexpr float faint = 0.01f;
@@ -79,7 +82,7 @@ class Integrator {
 
     ProbeLight run() {
         if (settings_.error > 0) {
-            run_to(std::min(SampleTable::first_part, samples_.count()));
+            run_to(std::min(least_paths, samples_.count()));
             while (reached_error() > static_cast<double>(settings_.error) && 2 * std::uint64_t{light_.paths} <= samples_.count()) {
                 for (std::size_t k = 0; k < block_count / 2; ++k) {
                     Block pair = blocks_[2 * k];
@@ -163,12 +166,14 @@ class Integrator {
 
     // A closed room has no sky at all, not even one ray of it: the first misses are looked at twice. Where these stand, the sky
     // is in sight, and a ray more or less of it is no leak.
-    std::optional<trace::Hit> doubted(const trace::Ray& ray) {
+    std::optional<trace::Hit> doubted(trace::Ray& ray) {
         constexpr int doubted_misses = 8;
         if (misses_ >= doubted_misses) return std::nullopt;
         ++light_.rays;
-        std::optional<trace::Hit> hit = scene_.beside(ray);
-        if (!hit) ++misses_;
+        const trace::Ray other = trace::beside(ray);
+        std::optional<trace::Hit> hit = scene_.closest(other);
+        if (hit) ray = other;
+        else ++misses_;
         return hit;
     }
 

@@ -32,11 +32,11 @@ struct IntegrationSettings {
     std::uint32_t bounces = 3;
     float reach_m = 512;
     // Standard error to stop at, of E/pi relit by a sky of radiance 1 and of static irradiance, over their mean
-    // (convergence.h). Paths are doubled from 256 until it is reached or the samples are used up. 0: all samples.
+    // (convergence.h). Paths are doubled from 1,024 as long as it is not reached and the samples have as many. 0: all samples.
     float error = 0;
 };
 
-// Rays in the order in which they were shot, so that others can be measured on the same ones.
+// Rays in the order in which they were shot (but for the few that are looked at twice), so that others can be measured on them.
 struct RayLog {
     std::vector<trace::Ray> paths, shadows;
 };

@@ -34,7 +34,9 @@ PointLight point_light(const map::Light& light) {
 glm::vec3 mean_colour(const map::Map& map, const map::TextureView& view) {
     if (!view.present()) return glm::vec3(1);
     const map::Texture& texture = map.textures[view.texture];
-    return map::sample_filtered(texture, {0.5f, 0.5f}, static_cast<std::uint32_t>(texture.mips.size()));
+    const glm::vec3 mean = map::sample_filtered(texture, {0.5f, 0.5f}, static_cast<std::uint32_t>(texture.mips.size()));
+    // A few bright texels of a large picture round to nothing, and are something.
+    return map::brightest(texture) == glm::vec3(0) ? mean : glm::max(mean, 1 / 65535.0f);
 }
 
 EmissiveObject emissive_object(const map::Map& map, std::uint32_t index) {
@@ -58,7 +60,8 @@ EmissiveObject emissive_object(const map::Map& map, std::uint32_t index) {
         for (std::uint32_t t = 0; t < primitive.triangles.size(); ++t) {
             const auto corner = [&](glm::length_t k) { return world_from_object * glm::dvec4(primitive.positions[primitive.triangles[t][k]], 1); };
             const glm::dvec3 a = corner(0), b = corner(mirrored ? 2 : 1), c = corner(mirrored ? 1 : 2);
-            const double power = glm::length(glm::cross(b - a, c - a)) / 2 * radiance;
+            // Of the corners as they are kept, in float.
+            const double power = static_cast<double>(glm::length(glm::cross(glm::vec3(b) - glm::vec3(a), glm::vec3(c) - glm::vec3(a)))) / 2 * radiance;
             if (!(power > 0)) continue;
             emissive.numbers[p][t] = static_cast<std::uint32_t>(emissive.triangles.size());
             emissive.triangles.push_back({p, t, glm::vec3(a), glm::vec3(b), glm::vec3(c), material.double_sided, 0, 0});
@@ -99,6 +102,18 @@ glm::vec3 PointLight::irradiance_at(const glm::vec3& point) const {
 const EmissiveObject::Triangle* EmissiveObject::find(std::uint32_t primitive, std::uint32_t triangle) const {
     if (numbers[primitive].empty() || numbers[primitive][triangle] == UINT32_MAX) return nullptr;
     return &triangles[numbers[primitive][triangle]];
+}
+
+std::size_t emissive_triangles(const map::Map& map) {
+    std::vector<std::size_t> of_mesh(map.meshes.size(), 0);
+    for (std::size_t n = 0; n < of_mesh.size(); ++n) {
+        for (const map::Primitive& primitive : map.meshes[n].primitives) {
+            if (map.materials[primitive.material].emission != glm::vec3(0)) of_mesh[n] += primitive.triangles.size();
+        }
+    }
+    std::size_t count = 0;
+    for (const map::Object& object : map.objects) count += of_mesh[object.mesh];
+    return count;
 }
 
 StaticLights::StaticLights(std::shared_ptr<const map::Map> map) : map_(std::move(map)) {

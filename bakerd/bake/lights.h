@@ -57,6 +57,9 @@ struct EmissiveObject {
     [[nodiscard]] const Triangle* find(std::uint32_t primitive, std::uint32_t triangle) const;
 };
 
+// In all objects of the map together.
+[[nodiscard]] std::size_t emissive_triangles(const map::Map& map);
+
 class StaticLights {
   public:
     explicit StaticLights(std::shared_ptr<const map::Map> map);

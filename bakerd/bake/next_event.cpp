@@ -14,10 +14,10 @@ Incident NextEvent::towards(const PointLight& light, const glm::vec3& from) cons
     const glm::vec3 to_light = light.position - from;
     const float distance_m = glm::length(to_light);
     if (!(distance_m > 0)) return {};
-    return {to_light / distance_m, light.irradiance_at(from), distance_m, 0};
+    return {to_light / distance_m, light.irradiance_at(from), light.position, distance_m, 0, 0};
 }
 
-Incident NextEvent::towards(const Sun& sun, const glm::vec3& from) const { return {sun.towards, sun.irradiance, exit_distance(from, sun.towards, probe_, reach_m_), 0}; }
+Incident NextEvent::towards(const Sun& sun, const glm::vec3& from) const { return {sun.towards, sun.irradiance, glm::vec3(0), exit_distance(from, sun.towards, probe_, reach_m_), -1, 0}; }
 
 std::optional<Incident> NextEvent::draw(const glm::vec3& from, const std::array<double, 3>& u, const Roulette& roulette) const {
     const LightTree::Drawn drawn = tree_.draw(from, u[0], roulette);
@@ -35,7 +35,7 @@ std::optional<Incident> NextEvent::draw(const glm::vec3& from, const std::array<
     const glm::vec3 point = triangle.a * (1 - root) + triangle.b * weight_b + triangle.c * weight_c;
     const glm::vec3 to_light = point - from, normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
     const float distance_m = glm::length(to_light), double_area_m2 = glm::length(normal);
-    if (!(distance_m > 0) || glm::length(point - probe_) > reach_m_) return std::nullopt;
+    if (!(distance_m > 0) || !(double_area_m2 > 0) || glm::length(point - probe_) > reach_m_) return std::nullopt;
     const glm::vec3 direction = to_light / distance_m;
     const float cosine = -glm::dot(direction, normal) / double_area_m2;
     if (!(triangle.both_sides ? cosine != 0 : cosine > 0)) return std::nullopt;
@@ -45,7 +45,8 @@ std::optional<Incident> NextEvent::draw(const glm::vec3& from, const std::array<
     const bool mirrored = glm::determinant(glm::mat3(object.world_from_object)) < 0;
     const float u_weight = mirrored ? weight_c : weight_b, v_weight = mirrored ? weight_b : weight_c;
     if (!trace::is_there(lights_.map(), primitive, triangle.triangle, u_weight, v_weight)) return std::nullopt;
-    Incident incident{direction, glm::vec3(0), distance_m, 0};
+    const float magnitude = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), 1.0f});
+    Incident incident{direction, glm::vec3(0), point, distance_m, magnitude * 0x1p-20f / std::abs(cosine), 0};
     incident.density = drawn.probability * triangle.share * 2 / double_area_m2 * distance_m * distance_m / std::abs(cosine);
     incident.light = trace::emission_at(lights_.map(), primitive, triangle.triangle, u_weight, v_weight, double_area_m2, distance_m * first_footprint) / (lumens_per_watt * incident.density * drawn.survival);
     return incident;
@@ -61,8 +62,12 @@ float NextEvent::density_of(const glm::vec3& from, const glm::vec3& direction, c
 }
 
 trace::Ray NextEvent::shadow_ray(const glm::vec3& start, const Incident& incident) {
+    if (incident.clearance_m < 0) return {start, incident.direction, incident.distance_m};
+    // Aimed anew: from a start off the surface, the old direction would miss the light by as much.
+    const glm::vec3 way = incident.target - start;
+    const float distance_m = glm::length(way);
     // A point of a surface is not in its own shadow.
-    return {start, incident.direction, incident.density > 0 ? incident.distance_m * (1 - 0x1p-14f) : incident.distance_m};
+    return {start, distance_m > 0 ? way / distance_m : incident.direction, distance_m - (incident.density > 0 ? std::max(distance_m * 0x1p-14f, incident.clearance_m) : 0.0f)};
 }
 
 }  // namespace drtv::bake

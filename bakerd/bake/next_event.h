@@ -16,7 +16,9 @@ namespace drtv::bake {
 struct Incident {
     glm::vec3 direction{};
     glm::vec3 light{};      // already divided by the probability of the draw
-    float distance_m = 0;   // of the light
+    glm::vec3 target{};     // the light's place; of a sun, nothing
+    float distance_m = 0;   // of the light; of a sun, to the end of the reach
+    float clearance_m = 0;  // before the target, within which the light's own surface lies; of a sun, below 0
     float density = 0;      // per steradian with which next event draws this direction; 0: no path could find it
 };
 

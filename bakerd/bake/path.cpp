@@ -13,7 +13,8 @@ namespace {
 // across the surface.
 float clearance_along(const trace::Ray& ray, const trace::Hit& hit) {
     const glm::vec3 point = ray.origin + ray.direction * hit.distance_m;
-    const float magnitude = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), 1.0f});
+    // The start's coordinates too: a point near the world's origin is no better known than the ray that found it.
+    const float magnitude = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), std::abs(ray.origin.x), std::abs(ray.origin.y), std::abs(ray.origin.z), 1.0f});
     return magnitude * 0x1p-20f / -glm::dot(ray.direction, hit.normal);
 }
 
@@ -23,7 +24,7 @@ float clearance_along(const trace::Ray& ray, const trace::Hit& hit) {
 // last micrometres of a crevice) the path ends: better a path lost than light through a wall.
 std::optional<glm::vec3> before_surface(const trace::Ray& ray, const trace::Hit& hit) {
     const float back = clearance_along(ray, hit);
-    if (!(back <= hit.distance_m / 2)) return std::nullopt;
+    if (!(back >= 0 && back <= hit.distance_m / 2)) return std::nullopt;
     return ray.origin + ray.direction * (hit.distance_m - back);
 }
 

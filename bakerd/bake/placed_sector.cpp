@@ -45,8 +45,8 @@ tl::expected<void, std::string> store_positions(const std::vector<placement::Pla
 }  // namespace
 
 float scene_distance_m(const Settings& settings) {
-    // Placement looks over the border too, however short the reach.
-    const float distance_m = std::max(settings.reach_m, placement::decision_margin_m({settings.min_distance_m}));
+    // Placement looks over the border, and from there as far as the reach goes.
+    const float distance_m = settings.reach_m + placement::decision_margin_m({settings.min_distance_m}) + settings.min_distance_m;
     // And so does that of the neighbours.
     return settings.local_transfer ? distance_m + static_cast<float>(map::sector_size_m) : distance_m;
 }

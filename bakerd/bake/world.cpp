@@ -3,6 +3,7 @@
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/tile.h"
 
+#include <fmt/format.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -19,6 +20,10 @@ constexpr std::size_t kept_placements = 1024;
 }  // namespace
 
 tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map) {
+    constexpr std::size_t most_emissive = std::size_t{1} << 23;  // triangles: half a gigabyte
+    if (const std::size_t count = emissive_triangles(*map); count > most_emissive) {
+        return tl::unexpected(fmt::format("the map's emissive surfaces have {} triangles, instances counted, over the limit of {}", count, most_emissive));
+    }
     std::shared_ptr<World> world(new World(std::move(device), std::move(map)));
     auto sectors = map::sectors_with_ground(world->map());
     if (!sectors) return tl::unexpected(sectors.error());

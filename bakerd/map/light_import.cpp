@@ -24,6 +24,8 @@ tl::expected<Light, std::string> import_light(const tinygltf::Model& model, int 
     for (float value : {light.colour.x, light.colour.y, light.colour.z, light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians}) {
         if (!(value >= 0 && std::isfinite(value))) return fail(fmt::format("{} is not a colour, an intensity, a range or an angle", value));
     }
+    constexpr float max_intensity = 1e12f;
+    if (light.intensity > max_intensity) return fail(fmt::format("intensity {} is over the limit of {}", light.intensity, max_intensity));
     if (light.inner_cone_radians > light.outer_cone_radians || light.outer_cone_radians > std::numbers::pi_v<float> / 2) {
         return fail(fmt::format("cone angles {} and {} do not lie one in the other and below pi/2", light.inner_cone_radians, light.outer_cone_radians));
     }

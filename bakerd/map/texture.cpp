@@ -222,6 +222,7 @@ AlphaRange alpha_range(const Texture& texture, glm::vec2 low, glm::vec2 high) {
             if (!across[column]) continue;
             const AlphaRange& block = texture.alpha_blocks[std::size_t{row} * columns + column];
             range = {std::min(range.low, block.low), std::max(range.high, block.high)};
+            if (range.low == 0 && range.high == 255) return range;
         }
     }
     return range;

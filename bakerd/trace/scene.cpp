@@ -171,11 +171,11 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
     return hit;
 }
 
-std::optional<Hit> Scene::beside(const Ray& ray) const {
+Ray beside(const Ray& ray) {
     constexpr float breadth = 0x1p-18f;  // radians: 2 mm at 512 m
     const glm::vec3& d = ray.direction;
     const glm::vec3 across = glm::cross(d, std::abs(d.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0));
-    return closest({ray.origin, glm::normalize(d + across * breadth), ray.far_m});
+    return {ray.origin, glm::normalize(d + across * breadth), ray.far_m};
 }
 
 Surface Scene::surface(const Hit& hit, float footprint_m) const {
@@ -202,7 +202,19 @@ std::size_t Scene::crossings(const Ray& ray) const {
     rtcIntersect1(handle_, &query.base, &r);
     std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.id < b.id; });
     const auto same = [](const Crossing& a, const Crossing& b) { return a.id == b.id; };
-    return static_cast<std::size_t>(std::unique(crossings.begin(), crossings.end(), same) - crossings.begin());
+    crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
+    // Twins are one surface.
+    std::size_t count = crossings.size();
+    for (const Crossing& a : crossings) {
+        const TriangleSet& set = set_of(a.id.instance, a.id.set);
+        if (set.twins.empty() || !set.twins[a.id.triangle].present()) continue;
+        const TriangleSet::Twin& twin = set.twins[a.id.triangle];
+        for (const Crossing& b : crossings) {
+            const TriangleSet& other = set_of(b.id.instance, b.id.set);
+            if (a.id < b.id && a.id.instance == b.id.instance && other.primitive_index == twin.primitive && other.triangle_of(b.id.triangle) == twin.triangle) --count;
+        }
+    }
+    return count;
 }
 
 bool Scene::occluded(const Ray& ray) const {

@@ -26,6 +26,11 @@ struct Ray {
     float far_m = 0;      // hits at this distance or less count
 };
 
+// A ray a hair's breadth beside this one. Embree's robust test gives an edge one sign for both its triangles, but rounds the
+// edges around a vertex each by itself: of rays aimed exactly at a vertex, some 10 in a million pass between its triangles. Where
+// light must not leak, a miss counts when this one misses too.
+[[nodiscard]] Ray beside(const Ray& ray);
+
 struct Hit {
     float distance_m = 0;
     std::uint32_t instance = 0;   // in the scene
@@ -59,16 +64,12 @@ class Scene {
 
     // The closest hit. What alpha takes away lets the ray through; ties go to the object of the smaller digest.
     [[nodiscard]] std::optional<Hit> closest(const Ray& ray) const;
-    // The closest hit of a ray a hair's breadth beside this one, which met nothing. Embree's robust test gives an edge one sign for
-    // both its triangles, but rounds the edges around a vertex each by itself: of rays aimed exactly at a vertex, some 10 in a
-    // million pass between its triangles. Where light must not leak, a miss counts when this misses too.
-    [[nodiscard]] std::optional<Hit> beside(const Ray& ray) const;
     // Textures are averaged over a width of `footprint_m`.
     [[nodiscard]] Surface surface(const Hit& hit, float footprint_m) const;
     [[nodiscard]] bool occluded(const Ray& ray) const;
     // The same for many rays at once, which Embree does faster where they are incoherent.
     void occluded(std::span<const Ray> rays, std::vector<bool>& answers) const;
-    // How many surfaces the ray crosses, each at least once.
+    // How many surfaces the ray crosses; two that are twins (triangle_set.h) are one.
     [[nodiscard]] std::size_t crossings(const Ray& ray) const;
 
     // All crossings of the vertical line at (x, y) with static objects, from the top down; `hits` is replaced.

@@ -81,7 +81,7 @@ void find_twins(std::vector<std::unique_ptr<TriangleSet>>& sets) {
     std::vector<Corners> all;
     for (std::uint32_t s = 0; s < sets.size(); ++s) {
         const TriangleSet& set = *sets[s];
-        if (set.material->double_sided || set.material->transmission > 0) continue;
+        if (set.material->double_sided) continue;
         for (std::uint32_t n = 0; n < set.size(); ++n) {
             const glm::uvec3& t = set.primitive->triangles[set.triangle_of(n)];
             const std::vector<glm::vec3>& p = set.primitive->positions;
@@ -92,8 +92,9 @@ void find_twins(std::vector<std::unique_ptr<TriangleSet>>& sets) {
     std::ranges::sort(all, {}, [](const Corners& c) { return std::tuple(c.hash, c.set, c.triangle); });
     for (std::size_t first = 0, end = 0; first < all.size(); first = end) {
         while (end < all.size() && all[end].hash == all[first].hash) ++end;
+        constexpr std::size_t most_alike = 64;  // of which one is looked for: no sensible mesh has more in one place
         for (std::size_t a = first; end - first > 1 && a < end; ++a) {
-            for (std::size_t b = first; b < end; ++b) {
+            for (std::size_t b = first; b < std::min(end, first + most_alike); ++b) {
                 const std::optional<std::uint8_t> corner = turned_at(all[a].at, all[b].at);
                 if (!corner) continue;
                 TriangleSet& set = *sets[all[a].set];

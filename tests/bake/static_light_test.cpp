@@ -167,6 +167,22 @@ TEST(StaticLight, SquareLampByItsFormFactor) {
     }
 }
 
+// Far from the origin coordinates are coarse: a panel must not stand in the light that it sends to the floor.
+TEST(StaticLight, PanelShinesTheSameFarFromTheOrigin) {
+    const auto bounce_at = [](double offset_m) {
+        GltfBuilder b;
+        b.add_node({.mesh = b.add_mesh(ground(30), b.add_material({.colour = {0.8f, 0.8f, 0.8f, 1}})), .translation = glm::dvec3(offset_m, 0, -offset_m)});
+        b.add_node({.mesh = b.add_mesh(quad({-0.3f, 3, -0.3f}, {0.3f, 3, -0.3f}, {0.3f, 3, 0.3f}, {-0.3f, 3, 0.3f}), emissive_material(b, 0, 1000 * lumens)), .translation = glm::dvec3(offset_m, 0, -offset_m)});
+        const auto world = open_world(b);
+        const auto at = static_cast<float>(offset_m);
+        return static_cast<double>(light_at(*world, {at, at, 1}, 8192, 1).static_irradiance[0][3]);
+    };
+    const double near = bounce_at(0), tolerance = 4 * sampling * near;
+    EXPECT_GT(near, 1);
+    EXPECT_NEAR(bounce_at(1000), near, tolerance);
+    EXPECT_NEAR(bounce_at(4096), near, tolerance);
+}
+
 TEST(StaticLight, LampBehindAWallSendsNothingThrough) {
     GltfBuilder b;
     const int grey = b.add_material({.colour = {0.8f, 0.8f, 0.8f, 1}});

@@ -93,6 +93,19 @@ TEST(Transfer, LeavesLetLightThrough) {
     EXPECT_NEAR(under_constant_sky(under_sheet("static", true, 0), 0, 0), 0, horizon_strip);       // a board
 }
 
+// A leaf of two one-sided skins lets as much through as one of two sides.
+TEST(Transfer, TwinLeavesLetLightThroughToo) {
+    GltfBuilder b;
+    const int leaf = b.add_material({.colour = {0.4f, 0.4f, 0.4f, 1}, .mask_cutoff = 0.5});
+    Shape both = ground(3000, 10);
+    const std::vector<std::uint32_t> once = both.indices;
+    for (std::size_t n = 0; n + 2 < once.size(); n += 3) both.indices.insert(both.indices.end(), {once[n + 2], once[n + 1], once[n]});
+    b.place(both, "vegetation", leaf);
+    const auto world = open_world(b);
+    const bake::ProbeLight light = light_at(*world, {0, 0, 9}, 8192, 1);
+    for (std::size_t basis = 0; basis < 3; ++basis) EXPECT_NEAR(under_constant_sky(light, 0, basis), 0.2 * upper_share(basis), sampling * 0.2 + horizon_strip);
+}
+
 // From above, leaves send back what they do not let through.
 TEST(Transfer, TransmissionLeavesTheRestToReflection) {
     GltfBuilder b;

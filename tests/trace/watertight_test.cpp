@@ -17,7 +17,7 @@ int rays_a_shape() {
     return asked == nullptr ? 250000 : std::atoi(asked);
 }
 
-// Of rays aimed exactly at vertices a few pass (Scene::beside says why): a share of them all.
+// Of rays aimed exactly at vertices a few pass (trace::beside says why): a share of them all.
 constexpr double most_through_vertices = 2e-5;
 
 // n x n squares a side, corners shared.
@@ -82,7 +82,7 @@ void expect_closed(const Shape& shape, bool turned, unsigned seed) {
         const trace::Ray ray{from, glm::normalize(to - from), 1000};
         const bool closed = scene->closest(ray).has_value();
         EXPECT_EQ(scene->occluded(ray), closed);
-        through_both += closed || scene->beside(ray) ? 0 : 1;
+        through_both += closed || scene->closest(trace::beside(ray)) ? 0 : 1;
         (a == b ? through_vertices : through_edges) += closed ? 0 : 1;
     }
     EXPECT_EQ(through_edges, 0);
