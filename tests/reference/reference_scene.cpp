@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <vector>
 
 namespace drtv::reference {
 namespace {
@@ -50,6 +52,7 @@ Scene::Scene(const map::Map& map, const Region& region) : map_(map) {
 }
 
 void Scene::add_object(const map::Object& object, const Region& region) {
+    const std::size_t first = triangles_.size();
     const glm::dmat4x3 world_from_object(object.world_from_object);
     // A mirroring turns the winding over; the object space tells the front all the same.
     const bool mirrored = glm::determinant(glm::dmat3(world_from_object)) < 0;
@@ -63,8 +66,35 @@ void Scene::add_object(const map::Object& object, const Region& region) {
                 corner[k] = world_from_object * glm::dvec4(glm::dvec3(primitive.positions[primitive.triangles[n][static_cast<glm::length_t>(k)]]), 1.0);
             }
             if (apart(glm::min(corner[0], glm::min(corner[1], corner[2])), glm::max(corner[0], glm::max(corner[1], corner[2])), region)) continue;
-            const Triangle triangle{corner[0], corner[1] - corner[0], corner[2] - corner[0], worn, static_cast<std::uint32_t>(n)};
+            const Triangle triangle{corner[0], corner[1] - corner[0], corner[2] - corner[0], worn, static_cast<std::uint32_t>(n), false};
             if (glm::length(glm::cross(triangle.edge1, triangle.edge2)) > 0) triangles_.push_back(triangle);
+        }
+    }
+    mark_twins(first);
+}
+
+// Among the triangles from `first` on.
+void Scene::mark_twins(std::size_t first) {
+    using Corner = std::array<double, 3>;
+    std::map<std::array<Corner, 3>, std::vector<std::size_t>> by_corners;
+    for (std::size_t n = first; n < triangles_.size(); ++n) {
+        const Triangle& t = triangles_[n];
+        std::array<Corner, 3> corners;
+        std::size_t k = 0;
+        for (const glm::dvec3& edge : {glm::dvec3(0), t.edge1, t.edge2}) {
+            // Rounded, because corner + edge is.
+            const glm::dvec3 corner = glm::round((t.corner + edge) * 1e6);
+            corners[k++] = {corner.x, corner.y, corner.z};
+        }
+        std::sort(corners.begin(), corners.end());
+        by_corners[corners].push_back(n);
+    }
+    for (const auto& [corners, numbers] : by_corners) {
+        for (const std::size_t a : numbers) {
+            for (const std::size_t b : numbers) {
+                const auto front = [&](std::size_t n) { return glm::cross(triangles_[n].edge1, triangles_[n].edge2); };
+                if (glm::dot(front(a), front(b)) < 0) triangles_[a].twin = true;
+            }
         }
     }
 }
@@ -121,7 +151,7 @@ SurfaceHit Scene::surface(const Triangle& triangle, const Crossing& at, const gl
     SurfaceHit hit;
     hit.distance_m = at.distance_m;
     hit.normal = on_front ? front : -front;
-    if (!on_front && !material.double_sided && !worn.vegetation && !(material.transmission > 0)) {
+    if (!on_front && !triangle.twin && !material.double_sided && !worn.vegetation && !(material.transmission > 0)) {
         hit.absorbs = true;
         return hit;
     }

@@ -53,6 +53,7 @@ class Scene {
         glm::dvec3 corner, edge1, edge2;
         std::uint32_t worn = 0;      // index into worn_
         std::uint32_t number = 0;    // of the primitive's triangles
+        bool twin = false;           // another of the object has its corners and looks the other way: together two fronts
     };
     // A primitive of an object.
     struct Worn {
@@ -65,6 +66,7 @@ class Scene {
     };
 
     void add_object(const map::Object& object, const Region& region);
+    void mark_twins(std::size_t first);
     [[nodiscard]] static std::optional<Crossing> cross(const Triangle& triangle, const glm::dvec3& origin, const glm::dvec3& direction, double far_m);
     // Base colour (w is alpha) before clamping.
     [[nodiscard]] glm::dvec4 colour(const Triangle& triangle, const Crossing& at) const;
