@@ -26,6 +26,9 @@ using BasisSums = std::array<std::array<double, basis_count>, channel_count>;
 
 enum Half : std::size_t { upper, lower };
 
+// Of the first directions, per steradian.
+constexpr float uniform_density = 0.25f * std::numbers::inv_pi_v<float>;
+
 BasisWeights basis_weights(const glm::vec3& w) {
     BasisWeights weights{};
     for (std::size_t b = 0; b < basis_count; ++b) {
@@ -110,10 +113,6 @@ class Integrator {
         light_.paths = count;
     }
 
-    [[nodiscard]] glm::vec2 sample(std::span<const std::uint32_t> point, std::size_t dimension) const {
-        return {unit_float(point[dimension] ^ shift_[dimension]), unit_float(point[dimension + 1] ^ shift_[dimension + 1])};
-    }
-
     // Numbers that draw a light at a path's k-th point: of the table as far as it goes, else hashed.
     [[nodiscard]] std::array<double, numbers_a_light> light_sample(std::uint32_t n, std::uint32_t k) const {
         std::array<double, numbers_a_light> u{};
@@ -128,14 +127,14 @@ class Integrator {
 
     void trace_path(std::uint32_t n) {
         const std::span<const std::uint32_t> point = samples_.point(n);
-        trace::Ray ray{probe_, uniform_sphere(sample(point, 0)), settings_.reach_m};
+        trace::Ray ray{probe_, uniform_sphere(shifted(point, shift_, 0)), settings_.reach_m};
         const BasisWeights weights = basis_weights(ray.direction);
         const Half half = ray.direction.z > 0 ? upper : lower;
         for (std::size_t b = 0; b < basis_count; ++b) block_->weights[half][b] += static_cast<double>(weights[b]);
         add_emission_drawn_at_probe(n);
 
         glm::vec3 throughput(1);
-        float density = 0.25f * std::numbers::inv_pi_v<float>, footprint_m = 0;
+        float density = uniform_density, footprint_m = 0;
         for (std::uint32_t bounce = 0;; ++bounce) {
             ++light_.rays;
             if (log_ != nullptr) log_->paths.push_back(ray);
@@ -156,7 +155,7 @@ class Integrator {
             if (lit_ && surface.emission != glm::vec3(0)) add_emission_met(ray, *hit, surface.emission, density, weights, throughput);
             if (bounce == settings_.bounces) return;
             if (lit_) add_light_at(ray, *hit, surface, n, bounce + 1, weights, throughput);
-            const std::optional<Scattered> next = scatter(scene_, ray, *hit, surface, sample(point, 2 + 2 * std::size_t{bounce}));
+            const std::optional<Scattered> next = scatter(scene_, ray, *hit, surface, shifted(point, shift_, 2 + 2 * std::size_t{bounce}));
             if (!next) return;
             throughput *= next->weight;
             density = next->density;
@@ -213,8 +212,7 @@ class Integrator {
         if (!next_event_.has_emissive()) return;
         const std::optional<Incident> incident = next_event_.draw(probe_, light_sample(n, 0), {0, 0});
         if (!incident || incident->density <= 0) return;
-        constexpr float density = 0.25f * std::numbers::inv_pi_v<float>;
-        glm::vec3 light = incident->light * (incident->density / (incident->density + density) * std::numbers::inv_pi_v<float>);
+        glm::vec3 light = incident->light * (incident->density / (incident->density + uniform_density) * std::numbers::inv_pi_v<float>);
         if (!survives(light, n, 0) || !sees(probe_, *incident)) return;
         add(block_->static_light, basis_weights(incident->direction), light);
     }
@@ -257,8 +255,9 @@ class Integrator {
 
     bool sees(const glm::vec3& start, const Incident& incident) {
         ++light_.shadow_rays;
-        if (log_ != nullptr) log_->shadows.push_back(next_event_.shadow_ray(start, incident));
-        return !scene_.occluded(next_event_.shadow_ray(start, incident));
+        const trace::Ray ray = NextEvent::shadow_ray(start, incident);
+        if (log_ != nullptr) log_->shadows.push_back(ray);
+        return !scene_.occluded(ray);
     }
 
     void add_direct_light() {

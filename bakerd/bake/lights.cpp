@@ -85,6 +85,16 @@ EmissiveObject emissive_object(const map::Map& map, std::uint32_t index) {
     return emissive;
 }
 
+std::vector<std::size_t> emissive_triangles_of_meshes(const map::Map& map) {
+    std::vector<std::size_t> counts(map.meshes.size(), 0);
+    for (std::size_t n = 0; n < counts.size(); ++n) {
+        for (const map::Primitive& primitive : map.meshes[n].primitives) {
+            if (map.materials[primitive.material].emission != glm::vec3(0)) counts[n] += primitive.triangles.size();
+        }
+    }
+    return counts;
+}
+
 }  // namespace
 
 glm::vec3 PointLight::irradiance_at(const glm::vec3& point) const {
@@ -105,12 +115,7 @@ const EmissiveObject::Triangle* EmissiveObject::find(std::uint32_t primitive, st
 }
 
 std::size_t emissive_triangles(const map::Map& map) {
-    std::vector<std::size_t> of_mesh(map.meshes.size(), 0);
-    for (std::size_t n = 0; n < of_mesh.size(); ++n) {
-        for (const map::Primitive& primitive : map.meshes[n].primitives) {
-            if (map.materials[primitive.material].emission != glm::vec3(0)) of_mesh[n] += primitive.triangles.size();
-        }
-    }
+    const std::vector<std::size_t> of_mesh = emissive_triangles_of_meshes(map);
     std::size_t count = 0;
     for (const map::Object& object : map.objects) count += of_mesh[object.mesh];
     return count;
@@ -122,13 +127,9 @@ StaticLights::StaticLights(std::shared_ptr<const map::Map> map) : map_(std::move
         if (light.kind == map::LightKind::directional) suns_.push_back({-light.direction, radiometric(light.colour * light.intensity)});
         else points_.push_back(point_light(light));
     }
-    std::vector<bool> shines(map_->meshes.size(), false);
-    for (std::size_t n = 0; n < shines.size(); ++n) {
-        const auto& primitives = map_->meshes[n].primitives;
-        shines[n] = std::ranges::any_of(primitives, [&](const map::Primitive& p) { return map_->materials[p.material].emission != glm::vec3(0); });
-    }
+    const std::vector<std::size_t> triangles = emissive_triangles_of_meshes(*map_);
     for (std::uint32_t n = 0; n < map_->objects.size(); ++n) {
-        if (!shines[map_->objects[n].mesh]) continue;
+        if (triangles[map_->objects[n].mesh] == 0) continue;
         EmissiveObject emissive = emissive_object(*map_, n);
         if (emissive.power > 0) emissive_.push_back(std::move(emissive));
     }
@@ -224,23 +225,20 @@ LightTree::Drawn LightTree::draw(const glm::vec3& from, double u, const Roulette
     return drawn;
 }
 
-const EmissiveObject* LightTree::emissive_of(std::uint32_t object) const {
-    const auto found = std::ranges::lower_bound(leaf_of_object_, object, {}, &std::pair<std::uint32_t, std::int32_t>::first);
-    return found == leaf_of_object_.end() || found->first != object ? nullptr : nodes_[static_cast<std::size_t>(found->second)].item.emissive;
-}
-
-float LightTree::probability_of(const glm::vec3& from, std::uint32_t object) const {
-    const auto found = std::ranges::lower_bound(leaf_of_object_, object, {}, &std::pair<std::uint32_t, std::int32_t>::first);
-    if (found == leaf_of_object_.end() || found->first != object) return 0;
-    float probability = 1;
-    for (std::int32_t n = found->second; nodes_[static_cast<std::size_t>(n)].parent >= 0;) {
+LightTree::Drawn LightTree::find(const glm::vec3& from, std::uint32_t object) const {
+    const auto leaf = std::ranges::lower_bound(leaf_of_object_, object, {}, &std::pair<std::uint32_t, std::int32_t>::first);
+    if (leaf == leaf_of_object_.end() || leaf->first != object) return {};
+    Drawn drawn;
+    drawn.item = nodes_[static_cast<std::size_t>(leaf->second)].item;
+    drawn.probability = 1;
+    for (std::int32_t n = leaf->second; nodes_[static_cast<std::size_t>(n)].parent >= 0;) {
         const std::int32_t parent = nodes_[static_cast<std::size_t>(n)].parent;
         const Node& node = nodes_[static_cast<std::size_t>(parent)];
         const float share = share_of_left(node, from);
-        probability *= n == node.left ? share : 1 - share;
+        drawn.probability *= n == node.left ? share : 1 - share;
         n = parent;
     }
-    return probability;
+    return drawn;
 }
 
 }  // namespace drtv::bake

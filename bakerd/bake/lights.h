@@ -107,9 +107,8 @@ class LightTree {
     [[nodiscard]] std::span<const PointLight* const> points() const { return points_; }
     // REQUIRES: not empty.
     [[nodiscard]] Drawn draw(const glm::vec3& from, double u, const Roulette& roulette) const;
-    // The probability with which `draw` gives the emissive object; 0 when it is not in the tree.
-    [[nodiscard]] float probability_of(const glm::vec3& from, std::uint32_t object) const;
-    [[nodiscard]] const EmissiveObject* emissive_of(std::uint32_t object) const;
+    // The emissive object of that number with the probability with which `draw` gives it; 0 when it is not in the tree.
+    [[nodiscard]] Drawn find(const glm::vec3& from, std::uint32_t object) const;
 
   private:
     struct Node {

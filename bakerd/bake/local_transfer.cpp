@@ -12,7 +12,6 @@
 #include "bakerd/bake/local_transfer.h"
 
 #include "bakerd/bake/path.h"
-#include "bakerd/bake/sampling.h"
 
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
@@ -81,8 +80,8 @@ struct Brought {
 
 class LocalIntegrator {
   public:
-    LocalIntegrator(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const LocalSettings& settings)
-        : scene_(scene), settings_(settings), receiver_count_(receiver_count), samples_(settings.rays, 2 + 2 * (settings.bounces - 1)) {
+    LocalIntegrator(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const SampleTable& samples, const LocalSettings& settings)
+        : scene_(scene), settings_(settings), receiver_count_(receiver_count), samples_(samples) {
         for (const glm::ivec3& units : sources) {
             positions_.push_back(glm::vec3(units) * position_unit_m);
             shifts_.push_back(digital_shift(units));
@@ -112,7 +111,6 @@ class LocalIntegrator {
     }
 
   private:
-
     Brought bring(std::size_t p) const {
         Brought brought;
         brought.here.resize(positions_.size());
@@ -129,8 +127,7 @@ class LocalIntegrator {
     }
 
     void trace_path(std::size_t p, std::span<const std::uint32_t> numbers, std::vector<Group>& groups, std::uint64_t& rays) const {
-        const auto sample = [&](std::size_t d) { return glm::vec2(unit_float(numbers[d] ^ shifts_[p][d]), unit_float(numbers[d + 1] ^ shifts_[p][d + 1])); };
-        trace::Ray ray{positions_[p], uniform_sphere(sample(0)), settings_.reach_m};
+        trace::Ray ray{positions_[p], uniform_sphere(shifted(numbers, shifts_[p], 0)), settings_.reach_m};
         End end;
         glm::vec3 carried(1);
         float footprint_m = 0;
@@ -163,9 +160,9 @@ class LocalIntegrator {
             }
             groups[bounce].add(end);
             if (bounce + 1 == settings_.bounces) return;
-            const std::optional<Scattered> next = scatter(scene_, ray, *hit, surface, sample(2 + 2 * std::size_t{bounce}));
+            const std::optional<Scattered> next = scatter(scene_, ray, *hit, surface, shifted(numbers, shifts_[p], 2 + 2 * std::size_t{bounce}));
             if (!next) return;
-            const bool through = glm::dot(next->direction, hit->normal) < 0;
+            const bool through = next->through;
             const float probability = through ? share : 1 - share;
             // The first point's own draw of a side is p's alone to make; those between, both directions share.
             if (bounce == 0) {
@@ -215,7 +212,7 @@ class LocalIntegrator {
 
     // The sum of all strengths.
     float join(std::size_t p, std::size_t q, const Group& group, Links& links) const {
-        const float scale = 4 / static_cast<float>(settings_.rays);  // 4 pi of the sphere, over pi of the bounce
+        const float scale = 4 / static_cast<float>(samples_.count());  // 4 pi of the sphere, over pi of the bounce
         const float other = p == q ? 0.0f : 1.0f, square_reach = square(settings_.reach_m);
         const glm::vec3 from = positions_[q];
         links.source = q;
@@ -279,15 +276,17 @@ class LocalIntegrator {
     const trace::Scene& scene_;
     const LocalSettings& settings_;
     const std::size_t receiver_count_;
-    const SampleTable samples_;
+    const SampleTable& samples_;
     std::vector<glm::vec3> positions_;  // of the sources, receivers first
     std::vector<std::array<std::uint32_t, max_sample_dimensions>> shifts_;
 };
 
 }  // namespace
 
-LocalLight integrate_local(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const LocalSettings& settings) {
-    return LocalIntegrator(scene, sources, receiver_count, settings).run();
+std::uint32_t local_sample_dimensions(std::uint32_t bounces) { return 2 * bounces; }
+
+LocalLight integrate_local(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const SampleTable& samples, const LocalSettings& settings) {
+    return LocalIntegrator(scene, sources, receiver_count, samples, settings).run();
 }
 
 }  // namespace drtv::bake

@@ -2,6 +2,7 @@
 // point light at each source brings to each probe.
 #pragma once
 
+#include "bakerd/bake/sampling.h"
 #include "bakerd/trace/scene.h"
 
 #include <drtv/conventions.h>
@@ -18,7 +19,6 @@ inline constexpr float local_least_distance_m = 0.5f;
 
 struct LocalSettings {
     std::uint32_t bounces = 2;  // surface bounces, at least 1
-    std::uint32_t rays = 64;    // traced from each source
     float reach_m = 512;        // of a receiver: surfaces and sources beyond it do not count
 };
 
@@ -33,8 +33,12 @@ struct LocalLight {
     [[nodiscard]] const LocalCoefficients& at(std::size_t receiver, std::size_t source) const { return pairs[receiver * source_count + source]; }
 };
 
-// Positions in units of 2^-10 m; the first `receiver_count` sources are the receivers. A pure function of the triangles
+// Numbers per path that `samples` should have.
+[[nodiscard]] std::uint32_t local_sample_dimensions(std::uint32_t bounces);
+
+// Positions in units of 2^-10 m; samples.count() paths are traced from each. The first `receiver_count` sources are the receivers. A pure function of the triangles
 // within reach of them and of the arguments. Runs on the calling thread's TBB arena; the same numbers on any threads.
-[[nodiscard]] LocalLight integrate_local(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const LocalSettings& settings);
+[[nodiscard]] LocalLight integrate_local(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const SampleTable& samples,
+                                         const LocalSettings& settings);
 
 }  // namespace drtv::bake

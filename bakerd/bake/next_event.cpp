@@ -53,12 +53,11 @@ std::optional<Incident> NextEvent::draw(const glm::vec3& from, const std::array<
 }
 
 float NextEvent::density_of(const glm::vec3& from, const glm::vec3& direction, const trace::Hit& hit) const {
-    const std::uint32_t object = scene_.object_index(hit.instance);
-    const EmissiveObject* emissive = tree_.emissive_of(object);
-    const EmissiveObject::Triangle* triangle = emissive == nullptr ? nullptr : emissive->find(hit.primitive, hit.triangle);
+    const LightTree::Drawn drawn = tree_.find(from, scene_.object_index(hit.instance));
+    const EmissiveObject::Triangle* triangle = drawn.probability > 0 ? drawn.item.emissive->find(hit.primitive, hit.triangle) : nullptr;
     if (triangle == nullptr) return 0;
     const float cosine = std::abs(glm::dot(direction, hit.normal));
-    return tree_.probability_of(from, object) * triangle->share * 2 / hit.double_area_m2 * hit.distance_m * hit.distance_m / std::max(cosine, 1e-6f);
+    return drawn.probability * triangle->share * 2 / hit.double_area_m2 * hit.distance_m * hit.distance_m / std::max(cosine, 1e-6f);
 }
 
 trace::Ray NextEvent::shadow_ray(const glm::vec3& start, const Incident& incident) {

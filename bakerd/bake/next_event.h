@@ -39,7 +39,7 @@ class NextEvent {
     // One light of the tree by the three numbers; nothing where the draw sends no light.
     [[nodiscard]] std::optional<Incident> draw(const glm::vec3& from, const std::array<double, 3>& u, const Roulette& roulette) const;
 
-    // Radiance of an emissive surface that a path from `from` has hit, with the density of `draw` for its direction.
+    // The density with which `draw` gives the direction in which a path from `from` has hit an emissive surface, per steradian.
     [[nodiscard]] float density_of(const glm::vec3& from, const glm::vec3& direction, const trace::Hit& hit) const;
 
     // The ray on which nothing may lie, from `start`, a free point on the right side.

@@ -55,6 +55,7 @@ std::optional<Scattered> scatter(const trace::Scene& scene, const trace::Ray& ra
     if (!origin) return std::nullopt;
     Scattered scattered;
     scattered.origin = *origin;
+    scattered.through = through;
     // The first number chose the side; what is left of it is uniform again.
     const float probability = through ? share : 1 - share;
     if (share > 0) u.x = std::min((through ? u.x : u.x - share) / probability, 1 - 0x1p-24f);

@@ -29,6 +29,7 @@ struct Scattered {
     glm::vec3 origin, direction;
     glm::vec3 weight;    // what radiance from `direction` counts
     float density;       // per steradian, of the direction
+    bool through;        // to the other side of the surface
 };
 
 // The share of scattered light that is let through, as `scatter` draws it.

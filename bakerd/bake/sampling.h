@@ -12,7 +12,7 @@
 
 namespace drtv::bake {
 
-// Two dimensions for the first direction and two for each bounce.
+// Two dimensions for the first direction, two for each bounce, and what is left for draws of lights.
 inline constexpr std::uint32_t max_sample_dimensions = 18;
 
 // Points of one Sobol sequence (Sobol 1967; direction numbers of Joe and Kuo 2008), each dimension Owen-scrambled
@@ -50,6 +50,11 @@ class SampleTable {
 
 // In [0, 1).
 [[nodiscard]] inline float unit_float(std::uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; }
+
+// Two numbers of a point from a dimension on, shifted.
+[[nodiscard]] inline glm::vec2 shifted(std::span<const std::uint32_t> point, const std::array<std::uint32_t, max_sample_dimensions>& shift, std::size_t dimension) {
+    return {unit_float(point[dimension] ^ shift[dimension]), unit_float(point[dimension + 1] ^ shift[dimension + 1])};
+}
 
 // Uniform on the sphere; z falls with u.x.
 [[nodiscard]] glm::vec3 uniform_sphere(glm::vec2 u);

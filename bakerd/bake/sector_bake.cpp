@@ -106,7 +106,7 @@ void bake_local(World& world, const trace::Scene& scene, const PlacedSector& pla
         }
     }
     const LocalSources sources = local_sources(placed, neighbours, settings.reach_m);
-    const LocalLight light = integrate_local(scene, sources.positions, placed.positions.size(), {settings.local_bounces, settings.local_rays, settings.reach_m});
+    const LocalLight light = integrate_local(scene, sources.positions, placed.positions.size(), *world.samples(settings.local_rays, local_sample_dimensions(settings.local_bounces)), {settings.local_bounces, settings.reach_m});
     sector.local_transfer = encode_local(sources, light, placed.positions.size(), settings.reach_m);
     sector.convergence->local_bounces = settings.local_bounces;
     sector.convergence->local_rays = settings.local_rays;
@@ -118,7 +118,7 @@ void bake_local(World& world, const trace::Scene& scene, const PlacedSector& pla
 tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoordinate coordinate, const Settings& settings) {
     const trace::FloatMode float_mode;
     const auto scene = world.scene_for(coordinate, scene_distance_m(settings));
-    const auto samples = world.samples_for(settings);
+    const auto samples = world.samples(settings.rays, sample_dimensions(settings.bounces, !world.lights().empty()));
     const auto placed = world.placed(coordinate, settings, *scene);
     if (!*placed) return tl::unexpected(placed->error());
     const std::vector<placement::Position>& positions = (*placed)->positions;

@@ -1,6 +1,5 @@
 #include "bakerd/bake/world.h"
 
-#include "bakerd/bake/integrate.h"
 #include "bakerd/bake/tile.h"
 
 #include <fmt/format.h>
@@ -17,7 +16,13 @@ constexpr std::size_t kept_scenes = 2;
 // Two rows of tiles side by side; a placement is some kilobytes.
 constexpr std::size_t kept_placements = 1024;
 
+// Those of the paths and of local transfer, of two jobs at once.
+constexpr std::size_t kept_samples = 4;
+
 }  // namespace
+
+World::World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map)
+    : geometry_(std::move(device), map), lights_(map), scenes_(kept_scenes), placements_(kept_placements), samples_(kept_samples) {}
 
 tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map) {
     constexpr std::size_t most_emissive = std::size_t{1} << 23;  // triangles: half a gigabyte
@@ -39,25 +44,15 @@ tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<co
 
 std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate sector, float distance_m) {
     const map::SectorCoordinate tile = tile_of(sector);
-    CachedScene entry;
-    {
-        const std::lock_guard lock(mutex_);
-        const auto found = std::find_if(scenes_.begin(), scenes_.end(), [&](const CachedScene& s) { return s.tile == tile && s.distance_m == distance_m; });
-        if (found != scenes_.end()) scenes_.splice(scenes_.begin(), scenes_, found);
-        else scenes_.push_front({tile, distance_m, std::make_shared<std::once_flag>(), std::make_shared<std::shared_ptr<const trace::Scene>>()});
-        while (scenes_.size() > kept_scenes) scenes_.pop_back();
-        entry = scenes_.front();
-    }
-    // Built outside the lock: other tiles need not wait. Isolated, because a thread that helps out while it waits
-    // for the build could otherwise take up another sector of this tile and wait for itself.
-    std::call_once(*entry.built, [&] {
-        tbb::this_task_arena::isolate([&] {
+    // Isolated, because a thread that helps out while it waits for the build could otherwise take up another sector of this
+    // tile and wait for itself.
+    return *scenes_.get({tile, distance_m}, [&] {
+        return tbb::this_task_arena::isolate([&] {
             constexpr float side_m = tile_sectors * static_cast<float>(map::sector_size_m);
             const glm::vec2 corner = glm::vec2(tile.i, tile.j) * side_m;
-            *entry.scene = trace::Scene::build(geometry_, {corner, corner + side_m}, distance_m);
+            return trace::Scene::build(geometry_, {corner, corner + side_m}, distance_m);
         });
     });
-    return *entry.scene;
 }
 
 bool World::has_ground(map::SectorCoordinate sector) const {
@@ -65,27 +60,11 @@ bool World::has_ground(map::SectorCoordinate sector) const {
 }
 
 std::shared_ptr<const Placed> World::placed(map::SectorCoordinate sector, const Settings& settings, const trace::Scene& scene) {
-    CachedPlacement entry;
-    {
-        const std::lock_guard lock(mutex_);
-        const auto found = std::find_if(placements_.begin(), placements_.end(), [&](const CachedPlacement& p) { return p.sector == sector && p.reach_m == settings.reach_m && p.min_distance_m == settings.min_distance_m; });
-        if (found != placements_.end()) placements_.splice(placements_.begin(), placements_, found);
-        else placements_.push_front({sector, settings.reach_m, settings.min_distance_m, std::make_shared<std::once_flag>(), std::make_shared<Placed>()});
-        while (placements_.size() > kept_placements) placements_.pop_back();
-        entry = placements_.front();
-    }
-    std::call_once(*entry.found, [&] { *entry.placed = place_sector({manual_probes_, no_probes_}, scene, sector, settings); });
-    return entry.placed;
+    return placements_.get({sector, settings.reach_m, settings.min_distance_m}, [&] { return place_sector({manual_probes_, no_probes_}, scene, sector, settings); });
 }
 
-std::shared_ptr<const SampleTable> World::samples_for(const Settings& settings) {
-    const std::uint32_t dimensions = sample_dimensions(settings.bounces, !lights_.empty());
-    const std::lock_guard lock(mutex_);
-    if (!samples_ || samples_->count() != settings.rays || sample_dimensions_ != dimensions) {
-        samples_ = std::make_shared<const SampleTable>(settings.rays, dimensions);
-        sample_dimensions_ = dimensions;
-    }
-    return samples_;
+std::shared_ptr<const SampleTable> World::samples(std::uint32_t count, std::uint32_t dimensions) {
+    return samples_.get({count, dimensions}, [&] { return SampleTable(count, dimensions); });
 }
 
 }  // namespace drtv::bake

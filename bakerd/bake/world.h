@@ -3,6 +3,7 @@
 
 #include "bakerd/bake/lights.h"
 #include "bakerd/bake/placed_sector.h"
+#include "bakerd/bake/recent.h"
 #include "bakerd/bake/sampling.h"
 #include "bakerd/bake/settings.h"
 #include "bakerd/map/ground.h"
@@ -10,9 +11,7 @@
 #include "bakerd/trace/scene.h"
 #include "placement/closed_volume.h"
 
-#include <list>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -40,22 +39,24 @@ class World {
     // scene_distance_m of a sector or of its neighbour.
     [[nodiscard]] std::shared_ptr<const Placed> placed(map::SectorCoordinate sector, const Settings& settings, const trace::Scene& scene);
 
-    [[nodiscard]] std::shared_ptr<const SampleTable> samples_for(const Settings& settings);
+    [[nodiscard]] std::shared_ptr<const SampleTable> samples(std::uint32_t count, std::uint32_t dimensions);
 
   private:
-    struct CachedScene {
+    struct SceneKey {
         map::SectorCoordinate tile;
         float distance_m;
-        std::shared_ptr<std::once_flag> built;
-        std::shared_ptr<std::shared_ptr<const trace::Scene>> scene;
+        bool operator==(const SceneKey&) const = default;
     };
-    struct CachedPlacement {
+    struct PlacementKey {
         map::SectorCoordinate sector;
         float reach_m, min_distance_m;
-        std::shared_ptr<std::once_flag> found;
-        std::shared_ptr<Placed> placed;
+        bool operator==(const PlacementKey&) const = default;
     };
-    World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map) : geometry_(std::move(device), map), lights_(map) {}
+    struct SampleKey {
+        std::uint32_t count, dimensions;
+        bool operator==(const SampleKey&) const = default;
+    };
+    World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map);
 
     trace::MapGeometry geometry_;
     const StaticLights lights_;
@@ -63,11 +64,9 @@ class World {
     std::vector<placement::ClosedVolume> no_probes_;
     std::vector<glm::dvec3> manual_probes_;
 
-    std::mutex mutex_;
-    std::list<CachedScene> scenes_;                // guarded by mutex_; most recently used first
-    std::list<CachedPlacement> placements_;  // guarded by mutex_; most recently used first
-    std::shared_ptr<const SampleTable> samples_;   // guarded by mutex_
-    std::uint32_t sample_dimensions_ = 0;          // guarded by mutex_
+    Recent<SceneKey, std::shared_ptr<const trace::Scene>> scenes_;
+    Recent<PlacementKey, Placed> placements_;
+    Recent<SampleKey, SampleTable> samples_;
 };
 
 }  // namespace drtv::bake

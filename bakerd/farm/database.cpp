@@ -153,7 +153,7 @@ Result<std::unique_ptr<Database>> Database::open(const std::string& path) {
         version = query.integer();
     }
     if (version > schema_version) return fail(ErrorCode::failed_precondition, fmt::format("{} was written by a newer bakerd (schema {}, this one knows {})", path, version, schema_version));
-    if (version == 1 || version == 0) {
+    if (version < schema_version) {
         const auto created = database->transaction([&]() -> Result<void> {
             if (auto done = database->execute(version == 0 ? schema : schema_2_from_1); !done) return done;
             return database->execute(fmt::format("PRAGMA user_version={}", schema_version).c_str());

@@ -111,8 +111,10 @@ MipLevel stored(const Premultiplied& level) {
     return mip;
 }
 
+std::uint32_t blocks_along(std::uint32_t texels) { return (texels + alpha_block_texels - 1) / alpha_block_texels; }
+
 std::vector<AlphaRange> ranges_of_alpha(const Texture& texture) {
-    const std::uint32_t columns = (texture.width + alpha_block_texels - 1) / alpha_block_texels, rows = (texture.height + alpha_block_texels - 1) / alpha_block_texels;
+    const std::uint32_t columns = blocks_along(texture.width), rows = blocks_along(texture.height);
     std::vector<AlphaRange> blocks(std::size_t{columns} * rows, {255, 0});
     for (std::uint32_t y = 0; y < texture.height; ++y) {
         for (std::uint32_t x = 0; x < texture.width; ++x) {
@@ -206,7 +208,7 @@ void prefilter(Texture& texture) {
 }
 
 AlphaRange alpha_range(const Texture& texture, glm::vec2 low, glm::vec2 high) {
-    const std::uint32_t columns = (texture.width + alpha_block_texels - 1) / alpha_block_texels, rows = (texture.height + alpha_block_texels - 1) / alpha_block_texels;
+    const std::uint32_t columns = blocks_along(texture.width), rows = blocks_along(texture.height);
     // Blocks along one axis that samples within [from, to] can read; all of them where the picture repeats inside.
     const auto blocks = [](float from, float to, std::uint32_t size, std::uint32_t count, Wrap wrap) {
         std::vector<bool> touched(count, false);

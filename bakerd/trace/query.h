@@ -1,21 +1,35 @@
-// What a filter function and its caller share during one query.
+// What Embree is asked with, and what a filter function and its caller share during one query.
 #pragma once
+
+#include "bakerd/trace/scene.h"
 
 #include <embree3/rtcore.h>
 
+#include <compare>
 #include <cstdint>
 #include <limits>
-#include <tuple>
 #include <vector>
 
 namespace drtv::trace {
+
+[[nodiscard]] inline RTCRay embree_ray(const Ray& ray) {
+    RTCRay r{};
+    r.org_x = ray.origin.x;
+    r.org_y = ray.origin.y;
+    r.org_z = ray.origin.z;
+    r.dir_x = ray.direction.x;
+    r.dir_y = ray.direction.y;
+    r.dir_z = ray.direction.z;
+    r.tfar = ray.far_m;
+    r.mask = ~0u;
+    return r;
+}
 
 // Which triangle, in Embree's numbers: instance in the scene, triangle set of its mesh, triangle of the set. All three
 // follow the order of the content (TriangleSet), so that the smaller one does too.
 struct TriangleId {
     std::uint32_t instance = 0, set = 0, triangle = 0;
-    bool operator<(const TriangleId& o) const { return std::tie(instance, set, triangle) < std::tie(o.instance, o.set, o.triangle); }
-    bool operator==(const TriangleId&) const = default;
+    auto operator<=>(const TriangleId&) const = default;
 };
 
 struct Crossing {

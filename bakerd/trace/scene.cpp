@@ -65,24 +65,24 @@ void turn_to_twin(const TriangleSet::Twin& twin, Hit& hit) {
     hit.front = true;
 }
 
-RTCRay embree_ray(const Ray& ray) {
-    RTCRay r{};
-    r.org_x = ray.origin.x;
-    r.org_y = ray.origin.y;
-    r.org_z = ray.origin.z;
-    r.dir_x = ray.direction.x;
-    r.dir_y = ray.direction.y;
-    r.dir_z = ray.direction.z;
-    r.tfar = ray.far_m;
-    r.mask = ~0u;
-    return r;
-}
-
 RTCRayHit embree_ray_hit(const Ray& ray) {
     RTCRayHit r{};
     r.ray = embree_ray(ray);
     r.hit.geomID = r.hit.primID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     return r;
+}
+
+// Every triangle that the ray meets, once, in the order of their ids.
+std::vector<Crossing> collect_crossings(RTCScene scene, const Ray& ray) {
+    std::vector<Crossing> crossings;
+    Query query;
+    query.crossings = &crossings;
+    RTCRayHit r = embree_ray_hit(ray);
+    rtcIntersect1(scene, &query.base, &r);
+    std::ranges::sort(crossings, {}, &Crossing::id);
+    const auto again = std::ranges::unique(crossings, {}, &Crossing::id);
+    crossings.erase(again.begin(), again.end());
+    return crossings;
 }
 
 }  // namespace
@@ -195,14 +195,7 @@ void Scene::occluded(std::span<const Ray> rays, std::vector<bool>& answers) cons
 }
 
 std::size_t Scene::crossings(const Ray& ray) const {
-    std::vector<Crossing> crossings;
-    Query query;
-    query.crossings = &crossings;
-    RTCRayHit r = embree_ray_hit(ray);
-    rtcIntersect1(handle_, &query.base, &r);
-    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.id < b.id; });
-    const auto same = [](const Crossing& a, const Crossing& b) { return a.id == b.id; };
-    crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
+    const std::vector<Crossing> crossings = collect_crossings(handle_, ray);
     // Twins are one surface.
     std::size_t count = crossings.size();
     for (const Crossing& a : crossings) {
@@ -226,23 +219,14 @@ bool Scene::occluded(const Ray& ray) const {
 
 void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
     hits.clear();
-    std::vector<Crossing> crossings;
-    Query query;
-    query.crossings = &crossings;
     // The line's ends are constants: were they taken from the scene, its rounding would depend on far objects.
-    RTCRayHit r = embree_ray_hit({glm::vec3(at, map::max_height_m), glm::vec3(0, 0, -1), 2 * map::max_height_m});
-    rtcIntersect1(handle_, &query.base, &r);
-    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.id < b.id; });
-    for (std::size_t n = 0; n < crossings.size(); ++n) {
-        const Crossing& crossing = crossings[n];
-        if (n > 0 && crossing.id == crossings[n - 1].id) continue;
-        const Instance& instance = instances_[crossing.id.instance];
-        const map::Object& object = map_->objects[instance.object];
+    for (const Crossing& crossing : collect_crossings(handle_, {glm::vec3(at, map::max_height_m), glm::vec3(0, 0, -1), 2 * map::max_height_m})) {
+        const map::Object& object = map_->objects[object_index(crossing.id.instance)];
         if (object.role == map::Role::vegetation) continue;
         const TriangleSet& set = set_of(crossing.id.instance, crossing.id.set);
         const std::optional<double> z_m = height_on_triangle(object, *set.primitive, set.triangle_of(crossing.id.triangle), at);
         if (!z_m) continue;
-        const bool two_sided = set.material->double_sided || set.material->transmission > 0;
+        const bool two_sided = is_two_sided(*set.material, object.role);
         hits.push_back({static_cast<float>(*z_m), crossing.facing < 0 || two_sided, crossing.facing > 0 || two_sided});
     }
     std::stable_sort(hits.begin(), hits.end(), [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });

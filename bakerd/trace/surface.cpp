@@ -105,9 +105,7 @@ glm::vec3 emission_at(const map::Map& map, const map::Primitive& primitive, std:
 
 Surface surface_at(const map::Map& map, const map::Primitive& primitive, map::Role role, std::uint32_t triangle, float u, float v, bool front, float double_area_m2, float footprint_m) {
     const map::Material& material = map.materials[primitive.material];
-    // Leaves reflect on both sides, whatever the exporter says, and what lets light through has no blind side.
-    const bool two_sided = role == map::Role::vegetation || material.double_sided || material.transmission > 0;
-    if (!front && !two_sided) return {true, glm::vec3(0), glm::vec3(0), glm::vec3(0)};
+    if (!front && !is_two_sided(material, role)) return {true, glm::vec3(0), glm::vec3(0), glm::vec3(0)};
 
     const glm::uvec3& t = primitive.triangles[triangle];
     glm::vec3 colour(material.base_colour);

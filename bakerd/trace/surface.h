@@ -19,6 +19,9 @@ struct Surface {
 // this share of what it sends back: leaves do about that much in visible light.
 inline constexpr float leaf_transmission = 0.5f;
 
+// Leaves reflect on both sides, whatever the exporter says, and what lets light through has no blind side.
+[[nodiscard]] inline bool is_two_sided(const map::Material& material, map::Role role) { return role == map::Role::vegetation || material.double_sided || material.transmission > 0; }
+
 // Barycentric u, v weigh the triangle's second and third vertex.
 [[nodiscard]] float alpha_at(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
 

@@ -9,7 +9,6 @@
 #include <array>
 #include <bit>
 #include <cassert>
-#include <numeric>
 #include <optional>
 #include <tuple>
 
@@ -144,31 +143,21 @@ void attach(RTCDeviceTy* device, RTCSceneTy* scene, TriangleSet& set, std::uint3
     const auto count = static_cast<std::uint32_t>(set.size());
     // Corners stay shared: the robust test gives an edge one sign for both its triangles only where their vertices are the
     // same. Those that the set does not use are left out.
-    std::vector<std::uint32_t> used;
-    if (!set.triangles.empty()) {
-        std::vector<bool> marked(primitive.positions.size(), false);
-        for (const std::uint32_t triangle : set.triangles) {
-            for (glm::length_t k = 0; k < 3; ++k) marked[primitive.triangles[triangle][k]] = true;
-        }
-        for (std::uint32_t n = 0; n < marked.size(); ++n) {
-            if (marked[n]) used.push_back(n);
-        }
-    } else {
-        used.resize(primitive.positions.size());
-        std::iota(used.begin(), used.end(), 0u);
+    std::vector<bool> marked(primitive.positions.size(), false);
+    for (std::uint32_t n = 0; n < count; ++n) {
+        for (glm::length_t k = 0; k < 3; ++k) marked[primitive.triangles[set.triangle_of(n)][k]] = true;
     }
-    std::vector<std::uint32_t> number(primitive.positions.size());
+    std::vector<std::uint32_t> used, number(primitive.positions.size());
+    for (std::uint32_t n = 0; n < marked.size(); ++n) {
+        number[n] = static_cast<std::uint32_t>(used.size());
+        if (marked[n]) used.push_back(n);
+    }
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Embree's own buffers, because it reads some bytes past the last vertex.
     auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), used.size()));
     auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), count));
     const glm::dmat4x3 transform(scene_from_object);
-    const bool moved = scene_from_object != glm::mat4x3(1);
-    for (std::uint32_t n = 0; n < used.size(); ++n) {
-        const glm::vec3& position = primitive.positions[used[n]];
-        vertices[n] = moved ? glm::vec3(transform * glm::dvec4(position, 1)) : position;
-        number[used[n]] = n;
-    }
+    for (std::size_t n = 0; n < used.size(); ++n) vertices[n] = glm::vec3(transform * glm::dvec4(primitive.positions[used[n]], 1));
     for (std::uint32_t n = 0; n < count; ++n) {
         const glm::uvec3& t = primitive.triangles[set.triangle_of(n)];
         indices[n] = {number[t.x], number[t.y], number[t.z]};

@@ -23,7 +23,7 @@ bake::LocalLight local_at(bake::World& world, const std::vector<glm::vec3>& plac
     const auto scene = world.scene_for({0, 0}, 512);
     std::vector<glm::ivec3> units;
     for (const glm::vec3& place : places) units.emplace_back(glm::round(place * 1024.0f));
-    return bake::integrate_local(*scene, units, places.size(), {bounces, rays, 512});
+    return bake::integrate_local(*scene, units, places.size(), *world.samples(rays, bake::local_sample_dimensions(bounces)), {bounces, 512});
 }
 
 // Lamp and probe on one axis over an endless plane: band 0 and the axis of band 1 by one integral over the plane.

@@ -78,14 +78,17 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
     std::sort(rest_seconds.begin(), rest_seconds.end());
     std::printf("sector (%d, %d): %zu probes, %zu sources; the rest of the bake: %.0f ms\n", at.i, at.j, receivers, sources.positions.size(), rest_seconds[1] * 1e3);
 
-    const bake::LocalLight truth = bake::integrate_local(*scene, sources.positions, receivers, {settings.local_bounces, 8192, settings.reach_m});
+    const auto local_with = [&](std::uint32_t rays) {
+        return bake::integrate_local(*scene, sources.positions, receivers, *world->samples(rays, bake::local_sample_dimensions(settings.local_bounces)), {settings.local_bounces, settings.reach_m});
+    };
+    const bake::LocalLight truth = local_with(8192);
     const auto pairs = strong_pairs(truth, receivers);
     for (const std::uint32_t rays : {16u, 32u, 64u, 128u, 256u, 512u, 1024u}) {
         double best = 1e30;
         bake::LocalLight light;
         for (int n = 0; n < 3; ++n) {
             const double start = seconds();
-            light = bake::integrate_local(*scene, sources.positions, receivers, {settings.local_bounces, rays, settings.reach_m});
+            light = local_with(rays);
             best = std::min(best, seconds() - start);
         }
         std::vector<double> errors;

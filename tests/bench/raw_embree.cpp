@@ -1,5 +1,7 @@
 #include "tests/bench/raw_embree.h"
 
+#include "bakerd/trace/query.h"
+
 #include <cstring>
 
 namespace drtv::bench {
@@ -39,29 +41,12 @@ RawEmbree::~RawEmbree() {
     rtcReleaseDevice(device_);
 }
 
-namespace {
-
-RTCRay embree_ray(const trace::Ray& ray) {
-    RTCRay r{};
-    r.org_x = ray.origin.x;
-    r.org_y = ray.origin.y;
-    r.org_z = ray.origin.z;
-    r.dir_x = ray.direction.x;
-    r.dir_y = ray.direction.y;
-    r.dir_z = ray.direction.z;
-    r.tfar = ray.far_m;
-    r.mask = ~0u;
-    return r;
-}
-
-}  // namespace
-
 std::size_t RawEmbree::trace(std::span<const trace::Ray> closest, std::span<const trace::Ray> shadows) const {
     std::size_t hits = 0;
     for (const trace::Ray& ray : closest) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        RTCRayHit r{embree_ray(ray), {}};
+        RTCRayHit r{trace::embree_ray(ray), {}};
         r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene_, &context, &r);
         hits += r.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1u : 0u;
@@ -69,7 +54,7 @@ std::size_t RawEmbree::trace(std::span<const trace::Ray> closest, std::span<cons
     for (const trace::Ray& ray : shadows) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        RTCRay r = embree_ray(ray);
+        RTCRay r = trace::embree_ray(ray);
         rtcOccluded1(scene_, &context, &r);
         hits += r.tfar < 0 ? 1u : 0u;
     }

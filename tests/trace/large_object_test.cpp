@@ -1,4 +1,4 @@
-// Objects over 128 m are cut to the reach and put into world space; rays must not see the difference.
+// Objects over 96 m are cut to the reach and put into world space; rays must not see the difference.
 #include "tests/trace/scenes.h"
 
 #include <glm/geometric.hpp>
