@@ -47,6 +47,7 @@ tl::expected<ClosedVolume, std::string> ClosedVolume::make(std::string_view name
     Surface surface;
     pmp::polygon_soup_to_polygon_mesh(points, faces, surface);
     if (!CGAL::is_closed(surface)) return fail("is open: a closed mesh is needed to tell inside from outside");
+    pmp::orient(surface);
     ClosedVolume volume;
     volume.mesh_ = std::make_shared<const Mesh>(std::move(surface));
     // The first question builds the search tree; after it, asking only reads.
@@ -55,5 +56,25 @@ tl::expected<ClosedVolume, std::string> ClosedVolume::make(std::string_view name
 }
 
 bool ClosedVolume::contains(const glm::dvec3& point) const { return mesh_->side(Kernel::Point_3(point.x, point.y, point.z)) != CGAL::ON_UNBOUNDED_SIDE; }
+
+std::vector<glm::dvec3> ClosedVolume::vertices() const {
+    std::vector<glm::dvec3> vertices;
+    for (const auto vertex : mesh_->surface.vertices()) {
+        const Kernel::Point_3& p = mesh_->surface.point(vertex);
+        vertices.emplace_back(p.x(), p.y(), p.z());
+    }
+    return vertices;
+}
+
+std::vector<glm::uvec3> ClosedVolume::triangles() const {
+    std::vector<glm::uvec3> triangles;
+    for (const auto face : mesh_->surface.faces()) {
+        glm::uvec3 triangle{};
+        glm::length_t corner = 0;
+        for (const auto vertex : mesh_->surface.vertices_around_face(mesh_->surface.halfedge(face))) triangle[corner++] = static_cast<std::uint32_t>(vertex);
+        triangles.push_back(triangle);
+    }
+    return triangles;
+}
 
 }  // namespace drtv::placement

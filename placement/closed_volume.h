@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tl/expected.hpp>
 
@@ -20,6 +21,10 @@ class ClosedVolume {
 
     // Inside or on the boundary. Thread-safe.
     [[nodiscard]] bool contains(const glm::dvec3& point) const;
+
+    // The surface, its vertices merged and each of its parts turned outwards, in the order of the mesh it was made of.
+    [[nodiscard]] std::vector<glm::dvec3> vertices() const;
+    [[nodiscard]] std::vector<glm::uvec3> triangles() const;  // counter-clockwise seen from outside
 
   private:
     struct Mesh;

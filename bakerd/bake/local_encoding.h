@@ -20,7 +20,8 @@ struct LocalSources {
 // nearest probe, as far as the reach goes.
 [[nodiscard]] LocalSources local_sources(const PlacedSector& placed, std::span<const PlacedSector* const> neighbours, float reach_m);
 
-// Receivers take their nearest 128 sources within reach. Pairs that round to nothing are left out.
+// Receivers take their nearest 128 sources within reach. Pairs that round to nothing are left out. The codes
+// of a pair are rounded to 8 significant bits of its largest.
 [[nodiscard]] LocalTransfer encode_local(const LocalSources& sources, const LocalLight& light, std::size_t receiver_count, float reach_m);
 
 // The smallest exponent e, at least `least`, with |value| <= 2^e.

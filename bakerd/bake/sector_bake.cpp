@@ -10,6 +10,7 @@
 #include <drtv/write.h>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
@@ -93,6 +94,29 @@ void warn_of_backs(const map::Map& map, const Sector& sector, const std::vector<
                                    share * 100, name.empty() ? "an object without a name" : name));
 }
 
+// Those whose probe stands in the sector. Fails with a sentence when they are too many for one file.
+tl::expected<void, std::string> store_interiors(const World& world, const PlacedSector& placed, Sector& sector, std::vector<std::string>& warnings) {
+    std::size_t triangles = 0;
+    for (const InteriorVolume& interior : world.interiors()) {
+        if (interior.sector != map::SectorCoordinate{sector.i, sector.j}) continue;
+        if (!interior.probe) {
+            warnings.push_back(fmt::format("sector ({}, {}): the interior '{}' names no probe and no probe node is inside it: it is left out", sector.i, sector.j, interior.name));
+            continue;
+        }
+        // Manual probes are never given up, but heights are rounded.
+        const auto squared = [&](const placement::Position& position) {
+            const glm::dvec3 offset(position - *interior.probe);
+            return glm::dot(offset, offset);
+        };
+        const auto probe = std::ranges::min_element(placed.positions, {}, squared) - placed.positions.begin();
+        sector.interiors.push_back(interior.stored);
+        sector.interiors.back().probe = static_cast<std::uint8_t>(probe);
+        triangles += interior.stored.triangles.size();
+    }
+    if (sector.interiors.size() <= max_interiors && triangles <= max_interior_triangles) return {};
+    return tl::unexpected(fmt::format("sector ({}, {}) has {} interiors with {} triangles, over the limits of {} and {}", sector.i, sector.j, sector.interiors.size(), triangles, max_interiors, max_interior_triangles));
+}
+
 // Local transfer from the sector's probes and its neighbours'.
 void bake_local(World& world, const trace::Scene& scene, const PlacedSector& placed, const Settings& settings, Sector& sector) {
     std::vector<std::shared_ptr<const Placed>> around;
@@ -152,13 +176,14 @@ tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoor
     sector.bake = {settings.rays, settings.bounces, settings.reach_m, settings.min_distance_m, settings_key(settings).bytes};
     sector.convergence = convergence_of(lights, settings);
     warn_of_backs(world.map(), sector, lights, baked.warnings);
+    if (auto stored = store_interiors(world, **placed, sector, baked.warnings); !stored) return tl::unexpected(stored.error());
     if (settings.local_transfer) tbb::this_task_arena::isolate([&] { bake_local(world, *scene, **placed, settings, sector); });
     return baked;
 }
 
 tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(const Sector& sector) {
     std::vector<std::uint8_t> bytes = write_sector(sector);
-    for (const Finding& finding : validate_sector(bytes)) {
+    for (const Finding& finding : validate_sector(bytes).findings) {
         if (finding.issue->severity != Severity::error) continue;
         return tl::unexpected(fmt::format("sector ({}, {}) does not pass validation: {} {} {}", sector.i, sector.j, finding.issue->code, finding.path, finding.message));
     }

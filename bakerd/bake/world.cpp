@@ -36,7 +36,13 @@ tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<co
     for (const map::Volume& volume : world->map().volumes) {
         auto closed = placement::ClosedVolume::make(volume.name, volume.positions, volume.triangles);
         if (!closed) return tl::unexpected(closed.error());
-        if (volume.kind == map::VolumeKind::no_probes) world->no_probes_.push_back(std::move(*closed));
+        if (volume.kind == map::VolumeKind::no_probes) {
+            world->no_probes_.push_back(std::move(*closed));
+            continue;
+        }
+        auto interior = make_interior(world->map(), volume, *closed);
+        if (!interior) return tl::unexpected(interior.error());
+        world->interiors_.push_back(std::move(*interior));
     }
     for (const map::ManualProbe& probe : world->map().probes) world->manual_probes_.push_back(probe.position);
     return world;

@@ -1,6 +1,7 @@
 // A map made ready for baking: geometry, volumes, and the scenes around the sectors at work. Thread-safe.
 #pragma once
 
+#include "bakerd/bake/interiors.h"
 #include "bakerd/bake/lights.h"
 #include "bakerd/bake/placed_sector.h"
 #include "bakerd/bake/recent.h"
@@ -28,6 +29,7 @@ class World {
 
     [[nodiscard]] const map::Map& map() const { return *geometry_.map(); }
     [[nodiscard]] const StaticLights& lights() const { return lights_; }
+    [[nodiscard]] const std::vector<InteriorVolume>& interiors() const { return interiors_; }
     [[nodiscard]] const std::vector<map::SectorCoordinate>& sectors_with_ground() const { return sectors_; }
     [[nodiscard]] bool has_ground(map::SectorCoordinate sector) const;
 
@@ -62,6 +64,7 @@ class World {
     const StaticLights lights_;
     std::vector<map::SectorCoordinate> sectors_;  // with ground, sorted by (j, i)
     std::vector<placement::ClosedVolume> no_probes_;
+    std::vector<InteriorVolume> interiors_;
     std::vector<glm::dvec3> manual_probes_;
 
     Recent<SceneKey, std::shared_ptr<const trace::Scene>> scenes_;

@@ -262,6 +262,9 @@ Failure check_node_tree(const Json& root) {
     return {};
 }
 
+// What %xx decodes to may be anything; JSON and the service hold UTF-8 only.
+bool is_utf8(const std::string& text) { return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::ignore)) == text; }
+
 // A uri becomes what tinygltf shall read: plain base64, or a place in `outside`.
 Failure check_uri(Json& element, const std::string& where, std::optional<std::size_t> size_bytes, std::vector<OutsideBytes>& outside) {
     const std::string uri = element["uri"].get<std::string>();
@@ -272,7 +275,7 @@ Failure check_uri(Json& element, const std::string& where, std::optional<std::si
         return {};
     }
     std::optional<std::string> path = decode_uri(uri);
-    if (!path) return fmt::format("{}: the uri {} is not valid", where, shown(uri));
+    if (!path || !is_utf8(*path)) return fmt::format("{}: the uri {} is not valid", where, shown(uri));
     if (const auto problem = path_problem(*path)) return fmt::format("{}: {}", where, *problem);
     element["uri"] = std::to_string(outside.size());
     element["name"] = *path;

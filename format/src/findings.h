@@ -4,50 +4,34 @@
 #include <drtv/conventions.h>
 #include <drtv/validate.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace drtv {
 
-// Indices into all_issues().
-enum IssueIndex : std::size_t {
-    unreadable,
-    checksum,
-    unsupported_version,
-    reserved_code,
-    sky_visibility_range,
-    sky_visibility_down,
-    transfer_range,
-    grid_reference,
-    grid_no_probe,
-    settings_range,
-    duplicate_position,
-    static_irradiance_range,
-    static_exponent,
-    local_source_count,
-    local_source_duplicate,
-    local_exponent,
-    local_transfer_range,
-    convergence_range,
-    issue_count,
-};
-
 class Findings {
   public:
-    explicit Findings(std::size_t max) : max_(max) {}
+    explicit Findings(const ValidateOptions& options) : options_(options) {}
 
-    void add(IssueIndex issue, std::uint64_t offset, std::string path, std::string message) {
-        if (found_.size() < max_) found_.push_back({&all_issues()[issue], offset, std::move(path), std::move(message)});
+    // `path` and `message` are functions that give a string: most files have nothing to tell, and what is behind the cap is
+    // not shown.
+    template <class Path, class Message>
+    void add(const Issue& issue, std::uint64_t offset, std::optional<double> value, Path path, Message message) {
+        if (std::ranges::find(options_.ignored, &issue) != options_.ignored.end()) return;
+        ++(issue.severity == Severity::error ? report_.errors : report_.warnings);
+        if (report_.findings.size() < options_.max_findings) report_.findings.push_back({&issue, offset, path(), value, message()});
+        else report_.truncated = true;
     }
-    [[nodiscard]] std::vector<Finding> take() { return std::move(found_); }
+    [[nodiscard]] Report take() { return std::move(report_); }
 
   private:
-    std::size_t max_;
-    std::vector<Finding> found_;
+    const ValidateOptions& options_;
+    Report report_;
 };
 
 [[nodiscard]] inline std::string index(std::size_t n) { return "[" + std::to_string(n) + "]"; }

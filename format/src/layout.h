@@ -11,6 +11,9 @@ inline constexpr std::uint16_t major_version = 1;
 // Of a file with the sections 7 to 9, or some of them; a file without is one of version 1.0, byte for byte. In a file of
 // version 1.0 the kinds 7 to 9 are unused: what they hold there is anything.
 inline constexpr std::uint16_t minor_with_light_sections = 1;
+// Likewise of a file with interiors, or with local transfer of version 2 (filtered).
+inline constexpr std::uint16_t minor_with_interiors = 2;
+inline constexpr std::uint16_t filtered_local_version = 2;
 
 inline constexpr std::size_t header_bytes = 64;
 inline constexpr std::size_t entry_bytes = 32;
@@ -59,9 +62,32 @@ struct LocalTransferLayout {
           codes(masks + probe_count * mask_bytes(sources)),
           end(codes + pairs * light_codes_bytes) {}
 
+    // Behind the codes of a filtered section: 26 bytes a pair, not 24.
+    [[nodiscard]] constexpr std::size_t filtered_end(std::size_t pairs) const { return codes + pairs * filtered_pair_bytes; }
+    static constexpr std::size_t filtered_pair_bytes = 2 + light_codes_bytes;
+
     [[nodiscard]] static constexpr std::size_t source_at(std::size_t s) { return header_bytes + s * source_bytes; }
     [[nodiscard]] constexpr std::size_t receiver_at(std::size_t p) const { return receivers + p * receiver_bytes; }
     [[nodiscard]] constexpr std::size_t pair_at(std::size_t n) const { return codes + n * light_codes_bytes; }
+};
+
+// Interiors: header, one entry an interior, all vertices, all triangles; each part starts at a multiple of 16.
+struct InteriorsLayout {
+    static constexpr std::size_t interior_count = 0, reserved = 2, vertex_count = 4, triangle_count = 8, reserved2 = 12, header_bytes = 16;
+    static constexpr std::size_t entry_bytes = 32, vertex_bytes = 6, triangle_bytes = 6;
+    // Within an entry.
+    static constexpr std::size_t origin = 0, shift = 12, probe = 13, entry_reserved = 14, first_vertex = 16, vertices_of = 20, first_triangle = 24, triangles_of = 28;
+
+    std::size_t vertices, vertices_end, triangles, end;
+
+    constexpr InteriorsLayout(std::size_t interior_count_, std::size_t vertex_count_, std::size_t triangle_count_)
+        : vertices(header_bytes + interior_count_ * entry_bytes),
+          vertices_end(vertices + vertex_count_ * vertex_bytes),
+          triangles(align(vertices_end)),
+          end(triangles + triangle_count_ * triangle_bytes) {}
+
+    [[nodiscard]] static constexpr std::size_t entry_at(std::size_t n) { return header_bytes + n * entry_bytes; }
+    [[nodiscard]] constexpr std::size_t triangle_at(std::size_t n) const { return triangles + n * triangle_bytes; }
 };
 
 // Where the values of a section lie in the file. Inside a compressed section no byte stands for one value: the

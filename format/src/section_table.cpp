@@ -1,11 +1,10 @@
-// Header and table of sections: everything that holds before a section is looked into.
-#include <drtv/read.h>
+// Everything that holds before a section is looked into.
+#include "section_table.h"
 
 #include "bytes.h"
 #include "checksum.h"
-#include "decode_section.h"
-#include "layout.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace drtv {
@@ -50,10 +49,11 @@ ReadStatus check_header(Bytes file, std::size_t& section_count) {
         return fail(ReadError::bad_header, h::section_count,
                     "the header says " + std::to_string(section_count) + " sections, which do not fit the file or the limit of 64");
     }
-    std::vector<std::uint8_t> covered(file.begin(), file.begin() + h::checksum);
+    std::array<std::uint8_t, h::checksum + layout::max_sections * layout::entry_bytes> covered;
     const Bytes table = file.subspan(layout::header_bytes, section_count * layout::entry_bytes);
-    covered.insert(covered.end(), table.begin(), table.end());
-    if (xxh64(covered) != load_le<std::uint64_t>(file, h::checksum)) {
+    std::copy_n(file.begin(), h::checksum, covered.begin());
+    std::copy(table.begin(), table.end(), covered.begin() + h::checksum);
+    if (xxh64(Bytes(covered).first(h::checksum + table.size())) != load_le<std::uint64_t>(file, h::checksum)) {
         return fail(ReadError::checksum_mismatch, h::checksum, "the header's checksum does not match header and table");
     }
     const auto i = load_i32(file, h::sector_i), j = load_i32(file, h::sector_j);
@@ -78,31 +78,31 @@ ReadStatus check_header(Bytes file, std::size_t& section_count) {
 }
 
 ReadStatus check_entry(Bytes file, std::size_t at, const SectionEntry& entry, std::size_t& end) {
-    const std::string name = section_name(entry);
+    const auto name = [&] { return section_name(entry); };  // only a refusal is worth the string
     if (!all_zero(file.subspan(at + layout::entry::reserved, 3)) ||
         load_le<std::uint32_t>(file, at + layout::entry::reserved2) != 0) {
-        return fail(ReadError::bad_table, at, name + ": reserved bytes of its entry are not zero");
+        return fail(ReadError::bad_table, at, name() + ": reserved bytes of its entry are not zero");
     }
     if (entry.offset != layout::align(end)) {
-        return fail(ReadError::bad_table, at, name + " starts at " + std::to_string(entry.offset) + ", must start at " + std::to_string(layout::align(end)));
+        return fail(ReadError::bad_table, at, name() + " starts at " + std::to_string(entry.offset) + ", must start at " + std::to_string(layout::align(end)));
     }
     if (entry.stored_bytes > file.size() || entry.offset > file.size() - entry.stored_bytes) {
         return fail(ReadError::bad_table, at,
-                    name + " ends at " + std::to_string(std::uint64_t{entry.offset} + entry.stored_bytes) + ", the file has " +
+                    name() + " ends at " + std::to_string(std::uint64_t{entry.offset} + entry.stored_bytes) + ", the file has " +
                         std::to_string(file.size()) + " bytes");
     }
     if (entry.raw_bytes > layout::max_raw_section_bytes) {
-        return fail(ReadError::bad_table, at, name + " decodes to " + std::to_string(entry.raw_bytes) + " bytes, over the limit of 16 MiB");
+        return fail(ReadError::bad_table, at, name() + " decodes to " + std::to_string(entry.raw_bytes) + " bytes, over the limit of 16 MiB");
     }
     if (entry.codec == static_cast<std::uint8_t>(Codec::raw) && entry.raw_bytes != entry.stored_bytes) {
         return fail(ReadError::bad_table, at,
-                    name + " is raw but says " + std::to_string(entry.stored_bytes) + " stored and " + std::to_string(entry.raw_bytes) + " raw bytes");
+                    name() + " is raw but says " + std::to_string(entry.stored_bytes) + " stored and " + std::to_string(entry.raw_bytes) + " raw bytes");
     }
     if (!all_zero(file.subspan(end, entry.offset - end))) {
-        return fail(ReadError::bad_table, end, name + ": the padding before it is not zero");
+        return fail(ReadError::bad_table, end, name() + ": the padding before it is not zero");
     }
     if (xxh64(file.subspan(entry.offset, entry.stored_bytes)) != entry.checksum) {
-        return fail(ReadError::checksum_mismatch, entry.offset, name + ": its checksum does not match its bytes");
+        return fail(ReadError::checksum_mismatch, entry.offset, name() + ": its checksum does not match its bytes");
     }
     end = std::size_t{entry.offset} + entry.stored_bytes;
     return {};
@@ -110,41 +110,57 @@ ReadStatus check_entry(Bytes file, std::size_t at, const SectionEntry& entry, st
 
 }  // namespace
 
+constexpr std::array<std::pair<SectionKind, std::string_view>, 10> section_names = {{{SectionKind::bake, "bake"},
+                                                                                    {SectionKind::positions, "positions"},
+                                                                                    {SectionKind::sky_visibility, "sky visibility"},
+                                                                                    {SectionKind::transfer, "transfer"},
+                                                                                    {SectionKind::grid, "grid"},
+                                                                                    {SectionKind::statistics, "statistics"},
+                                                                                    {SectionKind::static_irradiance, "static irradiance"},
+                                                                                    {SectionKind::local_transfer, "local transfer"},
+                                                                                    {SectionKind::convergence, "convergence"},
+                                                                                    {SectionKind::interiors, "interiors"}}};
+
 std::string_view name_of_section(std::uint16_t kind) {
-    switch (static_cast<SectionKind>(kind)) {
-        case SectionKind::bake: return "bake";
-        case SectionKind::positions: return "positions";
-        case SectionKind::sky_visibility: return "sky visibility";
-        case SectionKind::transfer: return "transfer";
-        case SectionKind::grid: return "grid";
-        case SectionKind::statistics: return "statistics";
-        case SectionKind::static_irradiance: return "static irradiance";
-        case SectionKind::local_transfer: return "local transfer";
-        case SectionKind::convergence: return "convergence";
-    }
-    return "unknown";
+    const auto* found = std::ranges::find(section_names, static_cast<SectionKind>(kind), &std::pair<SectionKind, std::string_view>::first);
+    return found == section_names.end() ? "unknown" : found->second;
 }
 
-ReadStatus read_section_table(std::span<const std::uint8_t> bytes, std::vector<SectionEntry>& entries) {
-    entries.clear();
+std::string section_name(const SectionEntry& entry) {
+    return std::string(name_of_section(entry.kind)) + " section (kind " + std::to_string(entry.kind) + ")";
+}
+
+const SectionEntry* SectionTable::find(SectionKind kind) const {
+    for (std::size_t n = 0; n < count; ++n) {
+        if (entries[n].kind == static_cast<std::uint16_t>(kind)) return &entries[n];
+    }
+    return nullptr;
+}
+
+ReadStatus load_section_table(Bytes file, SectionTable& table) {
+    table.count = 0;
     std::size_t section_count = 0;
-    if (ReadStatus status = check_header(bytes, section_count); !status.ok()) return status;
-    std::vector<SectionEntry> found;
+    if (ReadStatus status = check_header(file, section_count); !status.ok()) return status;
     std::size_t end = layout::header_bytes + section_count * layout::entry_bytes;
     for (std::size_t n = 0; n < section_count; ++n) {
         const std::size_t at = layout::header_bytes + n * layout::entry_bytes;
-        const SectionEntry entry = load_entry(bytes, at);
-        if (ReadStatus status = check_entry(bytes, at, entry, end); !status.ok()) return status;
-        for (const SectionEntry& earlier : found) {
-            if (earlier.kind == entry.kind) return fail(ReadError::bad_table, at, section_name(entry) + " stands twice in the table");
-        }
-        found.push_back(entry);
+        const SectionEntry entry = load_entry(file, at);
+        if (ReadStatus status = check_entry(file, at, entry, end); !status.ok()) return status;
+        if (table.find(static_cast<SectionKind>(entry.kind)) != nullptr) return fail(ReadError::bad_table, at, section_name(entry) + " stands twice in the table");
+        table.entries[table.count++] = entry;
     }
-    if (end != bytes.size()) {
-        return fail(ReadError::bad_table, end, "the last section ends at " + std::to_string(end) + ", the file has " + std::to_string(bytes.size()) + " bytes");
+    if (end != file.size()) {
+        return fail(ReadError::bad_table, end, "the last section ends at " + std::to_string(end) + ", the file has " + std::to_string(file.size()) + " bytes");
     }
-    entries = std::move(found);
     return {};
+}
+
+ReadStatus read_section_table(Bytes bytes, std::vector<SectionEntry>& entries) {
+    entries.clear();
+    SectionTable table;
+    ReadStatus status = load_section_table(bytes, table);
+    if (status.ok()) entries.assign(table.entries.begin(), table.entries.begin() + static_cast<std::ptrdiff_t>(table.count));
+    return status;
 }
 
 }  // namespace drtv

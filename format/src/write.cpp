@@ -3,9 +3,11 @@
 #include "bytes.h"
 #include "checksum.h"
 #include "layout.h"
+#include "local_filter.h"
 
 #include <zstd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdlib>
 
@@ -14,8 +16,9 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// High enough to be worth the time once, low enough to stay under a millisecond a sector.
-constexpr int zstd_level = 12;
+// High enough to be worth the time once, low enough to stay under a millisecond a sector. Local transfer is most of a file that
+// has it: from level 15 on zstd gives each stretch of it its own statistics.
+constexpr int zstd_level = 12, zstd_level_of_local_transfer = 15;
 
 Bytes bake_section(const BakeRecord& bake) {
     Bytes bytes;
@@ -112,30 +115,83 @@ Bytes convergence_section(const Convergence& c) {
     return bytes;
 }
 
+Bytes interiors_section(const std::vector<Interior>& interiors) {
+    using Rooms = layout::InteriorsLayout;
+    std::size_t vertices = 0, triangles = 0;
+    for (const Interior& interior : interiors) {
+        vertices += interior.vertices.size();
+        triangles += interior.triangles.size();
+    }
+    const Rooms parts(interiors.size(), vertices, triangles);
+    Bytes bytes;
+    bytes.reserve(parts.end);
+    append_le(bytes, static_cast<std::uint16_t>(interiors.size()));
+    append_le(bytes, std::uint16_t{0});
+    append_le(bytes, static_cast<std::uint32_t>(vertices));
+    append_le(bytes, static_cast<std::uint32_t>(triangles));
+    append_le(bytes, std::uint32_t{0});
+    vertices = triangles = 0;
+    for (const Interior& interior : interiors) {
+        for (const std::int32_t origin : interior.origin_units) append_le(bytes, static_cast<std::uint32_t>(origin));
+        append_le(bytes, interior.shift);
+        append_le(bytes, interior.probe);
+        append_le(bytes, std::uint16_t{0});
+        for (const std::size_t n : {vertices, interior.vertices.size(), triangles, interior.triangles.size()}) append_le(bytes, static_cast<std::uint32_t>(n));
+        vertices += interior.vertices.size();
+        triangles += interior.triangles.size();
+    }
+    const auto append_triples = [&](const std::vector<std::array<std::uint16_t, 3>>& triples) {
+        for (const auto& triple : triples) {
+            for (const std::uint16_t value : triple) append_le(bytes, value);
+        }
+    };
+    for (const Interior& interior : interiors) append_triples(interior.vertices);
+    bytes.resize(parts.triangles, 0);
+    for (const Interior& interior : interiors) append_triples(interior.triangles);
+    return bytes;
+}
+
 struct StoredSection {
     SectionEntry entry;
     Bytes bytes;
 };
 
-StoredSection store_section(SectionKind kind, Bytes raw, Codec codec) {
+// One frame; nothing where it is no smaller than `limit`.
+Bytes pack(const Bytes& bytes, int level, std::size_t limit) {
+    Bytes packed(ZSTD_compressBound(bytes.size()));
+    const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), level);
+    packed.resize(ZSTD_isError(size) || size >= limit ? 0 : size);
+    return packed;
+}
+
+StoredSection store_section(SectionKind kind, Bytes raw, Codec codec, std::size_t probe_count) {
     StoredSection section;
     section.entry.kind = static_cast<std::uint16_t>(kind);
     section.entry.version = 1;
     section.entry.raw_bytes = static_cast<std::uint32_t>(raw.size());
-    section.bytes = std::move(raw);
-    if (codec == Codec::zstd && !section.bytes.empty()) {
-        Bytes packed(ZSTD_compressBound(section.bytes.size()));
-        const std::size_t size =
-            ZSTD_compress(packed.data(), packed.size(), section.bytes.data(), section.bytes.size(), zstd_level);
-        if (!ZSTD_isError(size) && size < section.bytes.size()) {
-            packed.resize(size);
-            section.bytes = std::move(packed);
-            section.entry.codec = static_cast<std::uint8_t>(Codec::zstd);
+    if (codec == Codec::zstd && !raw.empty()) {
+        const bool filtered = kind == SectionKind::local_transfer;
+        section.bytes = filtered ? pack(filter_local(raw, probe_count), zstd_level_of_local_transfer, raw.size()) : pack(raw, zstd_level, raw.size());
+        if (!section.bytes.empty()) {
+            section.entry.codec = static_cast<std::uint8_t>(filtered ? Codec::filtered : Codec::zstd);
+            if (filtered) section.entry.version = layout::filtered_local_version;
         }
     }
+    if (section.bytes.empty()) section.bytes = std::move(raw);
     section.entry.stored_bytes = static_cast<std::uint32_t>(section.bytes.size());
     section.entry.checksum = xxh64(section.bytes);
     return section;
+}
+
+// The least minor version that knows all of them.
+std::uint16_t minor_version(const std::vector<StoredSection>& sections) {
+    std::uint16_t minor = 0;
+    for (const StoredSection& section : sections) {
+        const auto kind = static_cast<SectionKind>(section.entry.kind);
+        if (kind >= SectionKind::static_irradiance) minor = std::max(minor, layout::minor_with_light_sections);
+        if (kind == SectionKind::interiors || section.entry.version == layout::filtered_local_version) minor = std::max(minor, layout::minor_with_interiors);
+    }
+    return minor;
 }
 
 void append_entry(Bytes& bytes, const SectionEntry& entry) {
@@ -158,18 +214,19 @@ std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions&
     assert(std::abs(std::int64_t{sector.z_origin_units}) <= max_z_origin_units);
     assert(sector.static_irradiance.empty() || sector.static_irradiance.size() == sector.probes.size());
     assert(!sector.local_transfer || (sector.local_transfer->receivers.size() == sector.probes.size() && sector.local_transfer->sources.size() <= max_probes));
+    assert(sector.interiors.size() <= max_interiors);
     std::vector<StoredSection> sections;
-    const auto add = [&](SectionKind kind, Bytes raw) { sections.push_back(store_section(kind, std::move(raw), options.codec)); };
+    const auto add = [&](SectionKind kind, Bytes raw) { sections.push_back(store_section(kind, std::move(raw), options.codec, sector.probes.size())); };
     add(SectionKind::bake, bake_section(sector.bake));
     add(SectionKind::positions, positions_section(sector.probes));
     add(SectionKind::sky_visibility, sky_visibility_section(sector.probes));
     add(SectionKind::transfer, transfer_section(sector.probes));
     add(SectionKind::grid, grid_section(sector.grid));
     add(SectionKind::statistics, statistics_section(sector.statistics));
-    const std::size_t required = sections.size();
     if (!sector.static_irradiance.empty()) add(SectionKind::static_irradiance, static_irradiance_section(sector.static_irradiance));
     if (sector.local_transfer) add(SectionKind::local_transfer, local_transfer_section(*sector.local_transfer));
     if (sector.convergence) add(SectionKind::convergence, convergence_section(*sector.convergence));
+    if (!sector.interiors.empty()) add(SectionKind::interiors, interiors_section(sector.interiors));
 
     std::size_t end = layout::header_bytes + sections.size() * layout::entry_bytes;
     for (StoredSection& section : sections) {
@@ -184,7 +241,7 @@ std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions&
     file.reserve(end);
     append_le(file, layout::magic);
     append_le(file, layout::major_version);
-    append_le(file, sections.size() > required ? layout::minor_with_light_sections : std::uint16_t{0});
+    append_le(file, minor_version(sections));
     append_le(file, static_cast<std::uint32_t>(end));
     append_le(file, static_cast<std::uint32_t>(sections.size()));
     append_le(file, static_cast<std::uint32_t>(sector.i));

@@ -1,8 +1,7 @@
+#include "arguments.h"
 #include "commands.h"
 #include "files.h"
 #include "json_writer.h"
-
-#include <drtv/read.h>
 
 #include <array>
 #include <cstdio>
@@ -101,39 +100,50 @@ void append_convergence(JsonWriter& json, const Convergence& c) {
     json.key("static_rays").value(c.static_rays).key("local_transfer_rays").value(c.local_transfer_rays).end_object();
 }
 
+void append_interiors(JsonWriter& json, const Sector& sector) {
+    json.key("interiors").begin_array();
+    for (const Interior& interior : sector.interiors) {
+        json.begin_object().key("probe").value(unsigned{interior.probe}).key("vertices").begin_array();
+        for (const auto& vertex : interior.vertices) {
+            json.begin_array();
+            for (std::size_t axis = 0; axis < 3; ++axis) json.value(metres(interior.origin_units[axis] + (std::int64_t{vertex[axis]} << interior.shift)));
+            json.end_array();
+        }
+        json.end_array().key("triangles").begin_array();
+        for (const auto& triangle : interior.triangles) {
+            json.begin_array();
+            for (const std::uint16_t vertex : triangle) json.value(unsigned{vertex});
+            json.end_array();
+        }
+        json.end_array().end_object();
+    }
+    json.end_array();
+}
+
 }  // namespace
 
 int run_dump(Arguments arguments) {
-    std::string path;
-    bool as_json = false;
-    for (const std::string& argument : arguments) {
-        if (argument == "--json") as_json = true;
-        else if (path.empty() && !argument.starts_with("-")) path = argument;
-        else path = "-";
-    }
-    if (!as_json || path.empty() || path == "-") {
+    const auto parsed = ParsedArguments::parse("dump", arguments, {{"--json"}});
+    if (!parsed) return exit_usage;
+    if (!parsed->has("--json") || parsed->positional.size() != 1) {
         complain("usage is: drtv dump FILE --json");
         return exit_usage;
     }
-    std::string error;
-    const auto bytes = read_file(path, error);
-    if (!bytes) {
-        complain(error);
-        return exit_unreadable;
-    }
-    Sector sector;
-    if (const ReadStatus status = read_sector(*bytes, sector); !status.ok()) {
-        complain(path + ": " + status.message);
-        return exit_invalid;
-    }
+    const std::string& path = parsed->positional.front();
+    int exit_code = exit_valid;
+    std::vector<std::uint8_t> bytes;
+    const std::optional<Sector> loaded = load_sector(path, exit_code, &bytes);
+    if (!loaded) return exit_code;
+    const Sector& sector = *loaded;
     JsonWriter json;
-    json.begin_object().key("format_version").value(format_version(*bytes));
+    json.begin_object().key("format_version").value(format_version(bytes));
     json.key("sector").begin_array().value(sector.i).value(sector.j).end_array();
     append_settings(json, sector.bake);
     json.key("probes").begin_array();
     for (std::size_t p = 0; p < sector.probes.size(); ++p) append_probe(json, sector, p);
     json.end_array();
     append_grid(json, sector);
+    if (!sector.interiors.empty()) append_interiors(json, sector);
     append_statistics(json, sector.statistics);
     if (sector.convergence) append_convergence(json, *sector.convergence);
     json.end_object();

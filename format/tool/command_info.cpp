@@ -1,3 +1,4 @@
+#include "arguments.h"
 #include "commands.h"
 #include "files.h"
 
@@ -13,7 +14,7 @@ void print_sections(const std::vector<SectionEntry>& entries) {
     std::printf("sections\n");
     for (const SectionEntry& entry : entries) {
         std::printf("  %-17s %6u bytes%s\n", std::string(name_of_section(entry.kind)).c_str(), entry.raw_bytes,
-                    entry.codec == 0 ? "" : (", zstd " + std::to_string(entry.stored_bytes)).c_str());
+                    entry.codec == 0 ? "" : (", zstd " + std::to_string(entry.stored_bytes) + (entry.codec == 2 ? ", filtered" : "")).c_str());
     }
 }
 
@@ -54,6 +55,11 @@ void print_light(const Sector& sector) {
         std::printf("local lights    %zu pairs of probe and source, %zu sources, of which %zu in neighbours\n", local.pairs.size(),
                     local.sources.size(), local.sources.size() - static_cast<std::size_t>(own));
     }
+    if (!sector.interiors.empty()) {
+        std::size_t triangles = 0;
+        for (const Interior& interior : sector.interiors) triangles += interior.triangles.size();
+        std::printf("interiors       %zu with %zu triangles\n", sector.interiors.size(), triangles);
+    }
     if (const auto& c = sector.convergence) {
         std::printf("convergence     error %g asked, %g median, %g at 95 %%, %g at most; %u to %u paths a probe\n", static_cast<double>(c->error_asked),
                     static_cast<double>(c->error_median), static_cast<double>(c->error_p95), static_cast<double>(c->error_max), c->paths_least, c->paths_most);
@@ -63,27 +69,23 @@ void print_light(const Sector& sector) {
 }  // namespace
 
 int run_info(Arguments arguments) {
-    if (arguments.size() != 1 || arguments[0].starts_with("-")) {
+    const auto parsed = ParsedArguments::parse("info", arguments, {});
+    if (!parsed) return exit_usage;
+    if (parsed->positional.size() != 1) {
         complain("info needs exactly one file");
         return exit_usage;
     }
-    std::string error;
-    const auto bytes = read_file(arguments[0], error);
-    if (!bytes) {
-        complain(error);
-        return exit_unreadable;
-    }
-    Sector sector;
-    if (const ReadStatus status = read_sector(*bytes, sector); !status.ok()) {
-        complain(arguments[0] + ": " + status.message);
-        return exit_invalid;
-    }
+    int exit_code = exit_valid;
+    std::vector<std::uint8_t> bytes;
+    const std::optional<Sector> loaded = load_sector(parsed->positional.front(), exit_code, &bytes);
+    if (!loaded) return exit_code;
+    const Sector& sector = *loaded;
     std::vector<SectionEntry> entries;
-    if (const ReadStatus status = read_section_table(*bytes, entries); !status.ok()) return exit_invalid;
+    if (const ReadStatus status = read_section_table(bytes, entries); !status.ok()) return exit_invalid;
 
     const int x = sector.i * sector_size_m, y = sector.j * sector_size_m;
     std::printf("sector          (%d, %d): x %d to %d m, y %d to %d m\n", sector.i, sector.j, x, x + sector_size_m, y, y + sector_size_m);
-    std::printf("file            %zu bytes, format %s\n", bytes->size(), format_version(*bytes).c_str());
+    std::printf("file            %zu bytes, format %s\n", bytes.size(), format_version(bytes).c_str());
     print_probes(sector);
     const BakeRecord& bake = sector.bake;
     std::printf("settings        rays %u, bounces %u, reach %g m, min_distance %g m\n", bake.rays, bake.bounces,

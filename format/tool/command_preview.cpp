@@ -1,13 +1,13 @@
+#include "arguments.h"
 #include "commands.h"
+#include "dot_colour.h"
 #include "files.h"
 #include "region_picture.h"
 
-#include <drtv/read.h>
-
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdio>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -19,89 +19,63 @@ constexpr std::array<std::pair<std::string_view, DotQuantity>, 4> quantities = {
 
 struct PreviewArguments {
     std::string folder, out;
-    PictureOptions picture;
+    double metres_per_pixel = 0;
+    DotQuantity quantity = DotQuantity::relit;
 };
 
-bool parse(Arguments arguments, PreviewArguments& parsed) {
-    for (std::size_t n = 0; n < arguments.size(); ++n) {
-        const std::string& argument = arguments[n];
-        const bool takes_value = argument == "--out" || argument == "--metres-per-pixel" || argument == "--quantity";
-        if (takes_value && n + 1 == arguments.size()) {
-            complain("preview: " + argument + " needs a value");
-            return false;
+std::optional<PreviewArguments> parse(Arguments arguments) {
+    const auto parsed = ParsedArguments::parse("preview", arguments, {{"--out", true}, {"--metres-per-pixel", true}, {"--quantity", true}});
+    if (!parsed) return std::nullopt;
+    PreviewArguments preview;
+    const auto metres_per_pixel = parsed->positive("--metres-per-pixel", 1000, 0);
+    if (!metres_per_pixel) return std::nullopt;
+    preview.metres_per_pixel = *metres_per_pixel;
+    if (parsed->has("--quantity")) {
+        const auto* quantity = std::ranges::find(quantities, parsed->value("--quantity"), &std::pair<std::string_view, DotQuantity>::first);
+        if (quantity == quantities.end()) {
+            complain("preview: --quantity takes relit, sky, errors or back_hits, not \"" + parsed->value("--quantity") + "\"");
+            return std::nullopt;
         }
-        if (argument == "--out") {
-            parsed.out = arguments[++n];
-        } else if (argument == "--metres-per-pixel") {
-            const std::string& text = arguments[++n];
-            double& value = parsed.picture.metres_per_pixel;
-            const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-            if (result.ec != std::errc() || result.ptr != text.data() + text.size() || !(value > 0 && value < 1000)) {
-                complain("preview: --metres-per-pixel takes a number between 0 and 1000, not \"" + text + "\"");
-                return false;
-            }
-        } else if (argument == "--quantity") {
-            const std::string& text = arguments[++n];
-            const auto quantity = std::find_if(quantities.begin(), quantities.end(), [&](const auto& q) { return q.first == text; });
-            if (quantity == quantities.end()) {
-                complain("preview: --quantity takes relit, sky, errors or back_hits, not \"" + text + "\"");
-                return false;
-            }
-            parsed.picture.dots = quantity->second;
-        } else if (argument.starts_with("-")) {
-            complain("preview: unknown option \"" + argument + "\"");
-            return false;
-        } else if (parsed.folder.empty()) {
-            parsed.folder = argument;
-        } else {
-            complain("preview takes one folder or file, \"" + argument + "\" is one too many");
-            return false;
-        }
+        preview.quantity = quantity->second;
     }
-    if (parsed.folder.empty() || parsed.out.empty()) {
+    if (parsed->positional.size() > 1) {
+        complain("preview takes one folder or file, \"" + parsed->positional[1] + "\" is one too many");
+        return std::nullopt;
+    }
+    if (parsed->positional.empty() || parsed->value("--out").empty()) {
         complain("usage is: drtv preview DIR --out FILE.png");
-        return false;
+        return std::nullopt;
     }
-    return true;
+    preview.folder = parsed->positional.front();
+    preview.out = parsed->value("--out");
+    return preview;
 }
 
 }  // namespace
 
 int run_preview(Arguments arguments) {
-    PreviewArguments parsed;
-    if (!parse(arguments, parsed)) return exit_usage;
+    const auto parsed = parse(arguments);
+    if (!parsed) return exit_usage;
     std::string error;
-    const auto files = sector_files(parsed.folder, error);
+    const auto files = sector_files(parsed->folder, error);
     if (!files) {
         complain(error);
         return exit_unreadable;
     }
-    std::vector<Sector> sectors;
-    std::size_t probe_count = 0;
+    RegionPicture picture;
     for (const std::string& file : *files) {
-        const auto bytes = read_file(file, error);
-        if (!bytes) {
-            complain(error);
-            return exit_unreadable;
-        }
-        Sector sector;
-        if (const ReadStatus status = read_sector(*bytes, sector); !status.ok()) {
-            complain(file + ": " + status.message);
-            return exit_invalid;
-        }
-        probe_count += sector.probes.size();
-        sectors.push_back(std::move(sector));
+        int exit_code = exit_valid;
+        const std::optional<Sector> sector = load_sector(file, exit_code);
+        if (!sector) return exit_code;
+        picture.add(*sector, [&](std::size_t p, float sky_visibility) { return dot_colour(*sector, p, sky_visibility, parsed->quantity); });
     }
-    if (const std::size_t covered = covered_sectors(sectors); covered > max_covered_sectors) {
-        complain("the sectors lie too far apart for one picture: the rectangle around them has " + std::to_string(covered) + " sectors, the limit is " + std::to_string(max_covered_sectors));
-        return exit_usage;
-    }
-    const Image image = draw_region(sectors, parsed.picture);
-    if (!write_file(parsed.out, encode_png(image), error)) {
+    const auto image = draw(picture, parsed->metres_per_pixel);
+    if (!image) return exit_usage;
+    if (!write_file(parsed->out, encode_png(*image), error)) {
         complain(error);
         return exit_unreadable;
     }
-    std::printf("%s: %zu x %zu pixels, %zu sectors, %zu probes\n", parsed.out.c_str(), image.width, image.height, sectors.size(), probe_count);
+    std::printf("%s: %zu x %zu pixels, %zu sectors, %zu probes\n", parsed->out.c_str(), image->width, image->height, files->size(), picture.dots.size());
     return exit_valid;
 }
 

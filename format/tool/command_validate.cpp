@@ -1,87 +1,201 @@
+#include "arguments.h"
 #include "commands.h"
 #include "files.h"
 #include "json_writer.h"
+#include "progress_bar.h"
 
 #include <drtv/validate.h>
+#include <drtv/validate_region.h>
 
 #include <algorithm>
+#include <atomic>
+#include <charconv>
 #include <cstdio>
+#include <filesystem>
+#include <map>
+#include <thread>
 
 namespace drtv::tool {
 namespace {
 
-void print_finding(const std::string& file, const Finding& finding) {
-    const char* severity = finding.issue->severity == Severity::error ? "error" : "warning";
-    std::printf("%s: %s %s at byte %llu", file.c_str(), severity, std::string(finding.issue->code).c_str(),
-                static_cast<unsigned long long>(finding.offset));
-    if (!finding.path.empty()) std::printf(", %s", finding.path.c_str());
-    std::printf(": %s\n", finding.message.c_str());
+struct CheckedFile {
+    std::string path;
+    std::string unreadable;  // a sentence; else the rest holds
+    Report report;
+    std::optional<RegionSector> region;  // with --neighbours, where the file can be read
+};
+
+struct Request {
+    std::vector<std::string> paths;
+    ValidateOptions options;
+    std::vector<const Issue*> ignored;
+    bool json = false, neighbours = false, warnings_as_errors = false;
+};
+
+std::optional<Request> parse(Arguments arguments) {
+    const auto parsed = ParsedArguments::parse("validate", arguments,
+                                               {{"--json"}, {"--quick"}, {"--full"}, {"--neighbours"}, {"--warnings-as-errors"}, {"--ignore", true}, {"--max-findings", true}});
+    if (!parsed) return std::nullopt;
+    Request request;
+    request.paths = parsed->positional;
+    request.json = parsed->has("--json");
+    request.neighbours = parsed->has("--neighbours");
+    request.warnings_as_errors = parsed->has("--warnings-as-errors");
+    request.options.quick = parsed->has("--quick");
+    if (request.options.quick && (parsed->has("--full") || request.neighbours)) {
+        complain(std::string("validate: --quick looks at structure and checksums only, it does not go with ") + (request.neighbours ? "--neighbours" : "--full"));
+        return std::nullopt;
+    }
+    const auto most = parsed->count("--max-findings", 1, 1'000'000, request.options.max_findings);
+    if (!most) return std::nullopt;
+    request.options.max_findings = *most;
+    for (const std::string& code : parsed->all("--ignore")) {
+        const Issue* issue = issue_of_code(code);
+        if (issue == nullptr) {
+            complain("validate: there is no issue \"" + code + "\"; drtv issues lists them");
+            return std::nullopt;
+        }
+        request.ignored.push_back(issue);
+    }
+    if (request.paths.empty()) {
+        complain("validate needs at least one file or folder");
+        return std::nullopt;
+    }
+    return request;
 }
 
-void append_finding(JsonWriter& json, const Finding& finding) {
-    json.begin_object().key("code").value(finding.issue->code);
-    json.key("severity").value(finding.issue->severity == Severity::error ? "error" : "warning");
-    json.key("offset").value(finding.offset).key("path").value(finding.path).key("message").value(finding.message);
-    json.end_object();
+// The sector that a name of the form sector_<i>_<j>.drtv tells.
+std::optional<std::array<std::int32_t, 2>> sector_in_name(const std::string& path) {
+    const std::string name = std::filesystem::path(path).stem().string();
+    constexpr std::string_view prefix = "sector_";
+    if (!name.starts_with(prefix)) return std::nullopt;
+    std::array<std::int32_t, 2> sector{};
+    const char *at = name.data() + prefix.size(), *end = name.data() + name.size();
+    for (std::size_t k = 0; k < 2; ++k) {
+        const auto result = std::from_chars(at, end, sector[k]);
+        if (result.ec != std::errc()) return std::nullopt;
+        at = result.ptr;
+        if (k == 0 && (at == end || *at++ != '_')) return std::nullopt;
+    }
+    return at == end ? std::optional(sector) : std::nullopt;
+}
+
+void check_file(const Request& request, CheckedFile& file) {
+    const auto bytes = read_file(file.path, file.unreadable);
+    if (!bytes) return;
+    file.report = validate_sector(*bytes, request.options);
+    if (!request.neighbours) return;
+    RegionSector region;
+    region.named = sector_in_name(file.path);
+    if (read_region_sector(*bytes, region).ok()) file.region = std::move(region);
+}
+
+// Each file by itself, on all cores.
+void check_files(const Request& request, std::vector<CheckedFile>& files) {
+    std::atomic<std::size_t> next = 0, done = 0;
+    ProgressBar bar("checked", files.size());
+    const auto work = [&] {
+        for (std::size_t n; (n = next++) < files.size();) {
+            check_file(request, files[n]);
+            bar.show(++done);
+        }
+    };
+    std::vector<std::jthread> helpers;
+    const std::size_t threads = std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), files.size());
+    for (std::size_t n = 1; n < threads; ++n) helpers.emplace_back(work);
+    work();
+}
+
+// The files of one folder against each other. REQUIRES: all were checked.
+void check_region(const Request& request, std::span<CheckedFile* const> files) {
+    std::vector<RegionSector> sectors;
+    for (CheckedFile* file : files) sectors.push_back(std::move(*file->region));
+    for (RegionFinding& found : validate_region(sectors)) {
+        Report& report = files[found.sector]->report;
+        const Issue* issue = found.finding.issue;
+        if (std::ranges::find(request.ignored, issue) != request.ignored.end()) continue;
+        ++(issue->severity == Severity::error ? report.errors : report.warnings);
+        if (report.findings.size() < request.options.max_findings) report.findings.push_back(std::move(found.finding));
+        else report.truncated = true;
+    }
+}
+
+void check_regions(const Request& request, std::vector<CheckedFile>& files) {
+    std::map<std::filesystem::path, std::vector<CheckedFile*>> by_folder;
+    for (CheckedFile& file : files) {
+        if (file.region) by_folder[std::filesystem::path(file.path).parent_path()].push_back(&file);
+    }
+    for (const auto& [folder, its_files] : by_folder) check_region(request, its_files);
+}
+
+const char* name_of(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
+
+void print_findings(const CheckedFile& file) {
+    for (const Finding& finding : file.report.findings) {
+        std::printf("%s: %s %s at byte %llu", file.path.c_str(), name_of(finding.issue->severity), std::string(finding.issue->code).c_str(), static_cast<unsigned long long>(finding.offset));
+        if (!finding.path.empty()) std::printf(", %s", finding.path.c_str());
+        std::printf(": %s\n", finding.message.c_str());
+    }
+    if (file.report.truncated) std::printf("%s: %zu findings, the first %zu are shown\n", file.path.c_str(), file.report.errors + file.report.warnings, file.report.findings.size());
+}
+
+void append_file(JsonWriter& json, const CheckedFile& file, bool valid) {
+    const Report& report = file.report;
+    json.begin_object().key("file").value(file.path).key("valid").value(valid);
+    json.key("errors").value(std::uint64_t{report.errors}).key("warnings").value(std::uint64_t{report.warnings}).key("truncated").value(report.truncated);
+    json.key("findings").begin_array();
+    for (const Finding& finding : report.findings) {
+        json.begin_object().key("code").value(finding.issue->code).key("severity").value(name_of(finding.issue->severity));
+        json.key("group").value(name_of(finding.issue->group)).key("offset").value(finding.offset).key("path").value(finding.path);
+        json.key("value");
+        if (finding.value) json.value(*finding.value);
+        else json.null();
+        json.key("message").value(finding.message).end_object();
+    }
+    json.end_array().end_object();
 }
 
 }  // namespace
 
 int run_validate(Arguments arguments) {
-    bool as_json = false;
-    std::vector<std::string> paths;
-    for (const std::string& argument : arguments) {
-        if (argument == "--json") as_json = true;
-        else if (argument.starts_with("-")) {
-            complain("validate: unknown option \"" + argument + "\"");
-            return exit_usage;
-        } else {
-            paths.push_back(argument);
-        }
-    }
-    if (paths.empty()) {
-        complain("validate needs at least one file or folder");
-        return exit_usage;
-    }
+    std::optional<Request> request = parse(arguments);
+    if (!request) return exit_usage;
+    request->options.ignored = request->ignored;
 
     int exit_code = exit_valid;
-    std::size_t checked = 0, invalid = 0;
+    std::vector<CheckedFile> files;
+    for (const std::string& path : request->paths) {
+        std::string error;
+        if (const auto found = sector_files(path, error)) {
+            for (const std::string& file : *found) files.push_back({file, {}, {}, {}});
+        } else {
+            complain(error);
+            exit_code = exit_unreadable;
+        }
+    }
+    check_files(*request, files);
+    if (request->neighbours) check_regions(*request, files);
+
+    std::size_t checked = 0, invalid = 0, warnings = 0;
     JsonWriter json;
     json.begin_object().key("files").begin_array();
-    for (const std::string& path : paths) {
-        std::string error;
-        const auto files = sector_files(path, error);
-        if (!files) {
-            complain(error);
+    for (const CheckedFile& file : files) {
+        if (!file.unreadable.empty()) {
+            complain(file.unreadable);
             exit_code = std::max<int>(exit_code, exit_unreadable);
             continue;
         }
-        for (const std::string& file : *files) {
-            const auto bytes = read_file(file, error);
-            if (!bytes) {
-                complain(error);
-                exit_code = std::max<int>(exit_code, exit_unreadable);
-                continue;
-            }
-            ++checked;
-            const std::vector<Finding> findings = validate_sector(*bytes);
-            const bool valid = std::none_of(findings.begin(), findings.end(),
-                                            [](const Finding& f) { return f.issue->severity == Severity::error; });
-            if (!valid) {
-                ++invalid;
-                exit_code = exit_invalid;
-            }
-            json.begin_object().key("file").value(file).key("valid").value(valid).key("findings").begin_array();
-            for (const Finding& finding : findings) {
-                append_finding(json, finding);
-                if (!as_json) print_finding(file, finding);
-            }
-            json.end_array().end_object();
-        }
+        const bool valid = file.report.valid() && !(request->warnings_as_errors && file.report.warnings > 0);
+        ++checked;
+        invalid += valid ? 0 : 1;
+        warnings += file.report.warnings;
+        if (!valid) exit_code = exit_invalid;
+        if (request->json) append_file(json, file, valid);
+        else print_findings(file);
     }
-    json.end_array().key("checked").value(std::uint64_t{checked}).key("invalid").value(std::uint64_t{invalid}).end_object();
-    if (as_json) std::puts(json.text().c_str());
-    else std::printf("%zu sector file%s checked, %zu invalid\n", checked, checked == 1 ? "" : "s", invalid);
+    json.end_array().key("checked").value(std::uint64_t{checked}).key("invalid").value(std::uint64_t{invalid}).key("warnings").value(std::uint64_t{warnings}).end_object();
+    if (request->json) std::puts(json.text().c_str());
+    else std::printf("%zu sector file%s checked, %zu invalid%s\n", checked, checked == 1 ? "" : "s", invalid, warnings == 0 ? "" : (", " + std::to_string(warnings) + (warnings == 1 ? " warning" : " warnings")).c_str());
     return exit_code;
 }
 

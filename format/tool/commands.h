@@ -6,7 +6,7 @@
 
 namespace drtv::tool {
 
-enum ExitCode : int { exit_valid = 0, exit_usage = 1, exit_unreadable = 2, exit_invalid = 3 };
+enum ExitCode : int { exit_valid = 0, exit_usage = 1, exit_unreadable = 2, exit_invalid = 3, exit_different = 4 };
 
 using Arguments = std::span<const std::string>;
 
@@ -14,6 +14,9 @@ int run_validate(Arguments arguments);
 int run_info(Arguments arguments);
 int run_dump(Arguments arguments);
 int run_preview(Arguments arguments);
+int run_strip(Arguments arguments);
+int run_diff(Arguments arguments);
+int run_issues(Arguments arguments);
 
 // One sentence to stderr, "drtv: " before it.
 void complain(const std::string& sentence);

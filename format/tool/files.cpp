@@ -1,5 +1,9 @@
 #include "files.h"
 
+#include "commands.h"
+
+#include <drtv/read.h>
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -75,6 +79,24 @@ std::optional<std::vector<std::string>> sector_files(const std::string& path, st
     }
     std::sort(files.begin(), files.end());
     return files;
+}
+
+std::optional<Sector> load_sector(const std::string& path, int& exit_code, std::vector<std::uint8_t>* bytes) {
+    std::string error;
+    auto read = read_file(path, error);
+    if (!read) {
+        complain(error);
+        exit_code = exit_unreadable;
+        return std::nullopt;
+    }
+    std::optional<Sector> sector(std::in_place);
+    if (const ReadStatus status = read_sector(*read, *sector); !status.ok()) {
+        complain(path + ": " + status.message);
+        exit_code = exit_invalid;
+        return std::nullopt;
+    }
+    if (bytes != nullptr) *bytes = std::move(*read);
+    return sector;
 }
 
 }  // namespace drtv::tool

@@ -1,6 +1,8 @@
 // Files for the tool: reading one whole, finding the sector files of a folder.
 #pragma once
 
+#include <drtv/sector.h>
+
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -20,5 +22,9 @@ namespace drtv::tool {
 
 // `path` itself when it is a file; all `*.drtv` files below it, sorted, when it is a folder.
 [[nodiscard]] std::optional<std::vector<std::string>> sector_files(const std::string& path, std::string& error);
+
+// The sector in a file. Nothing where it cannot be read: then the reason is told and `exit_code` is set. `bytes`, where given, gets
+// the file.
+[[nodiscard]] std::optional<Sector> load_sector(const std::string& path, int& exit_code, std::vector<std::uint8_t>* bytes = nullptr);
 
 }  // namespace drtv::tool

@@ -110,6 +110,12 @@ JsonWriter& JsonWriter::value(bool truth) {
     return *this;
 }
 
+JsonWriter& JsonWriter::null() {
+    separate();
+    out_ += "null";
+    return *this;
+}
+
 JsonWriter& JsonWriter::value(float number) {
     separate();
     if (std::isfinite(number)) append_number(out_, number);

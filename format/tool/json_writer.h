@@ -19,6 +19,7 @@ class JsonWriter {
     JsonWriter& value(std::string_view text);
     JsonWriter& value(const char* text) { return value(std::string_view(text)); }
     JsonWriter& value(bool truth);
+    JsonWriter& null();
     JsonWriter& value(float number);
     JsonWriter& value(double number);
     JsonWriter& value(std::int64_t number);

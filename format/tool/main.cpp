@@ -1,4 +1,4 @@
-// drtv: validates, shows and pictures sector files.
+// drtv: validates, shows, compares, strips and pictures sector files.
 #include "commands.h"
 
 #include <algorithm>
@@ -15,13 +15,24 @@ constexpr const char* usage =
     "usage: drtv COMMAND ...\n"
     "\n"
     "  validate PATH... [--json]       check sector files, or all of a folder\n"
+    "          [--quick | --full]      structure and checksums only, or everything (the default)\n"
+    "          [--neighbours]          also the sectors of a folder against each other\n"
+    "          [--warnings-as-errors] [--ignore CODE]... [--max-findings N]\n"
     "  info FILE                       what a sector file holds\n"
     "  dump FILE --json                every number of a sector file as JSON\n"
+    "  diff A B [--json]               what changed between two files or folders\n"
+    "          [--png FILE.png] [--metres-per-pixel M]\n"
+    "  strip PATH --out PATH           the same sectors with fewer sections, or compressed\n"
+    "          [--keep SECTION,...]    optional sections to keep: static_irradiance, local_transfer,\n"
+    "                                  convergence, interiors, all (the default) or none\n"
+    "          [--codec raw|zstd]      how sections are stored; raw is the default\n"
     "  preview DIR --out FILE.png      picture of a region from above\n"
     "          [--metres-per-pixel M] [--quantity relit|sky|errors|back_hits]\n"
+    "  issues                          the table of all that validate can find\n"
     "  --version                       version of tool and format\n"
     "\n"
-    "exit status: 0 valid, 1 wrong usage, 2 a file cannot be read or written, 3 a file is invalid\n";
+    "exit status: 0 valid or equal, 1 wrong usage, 2 a file cannot be read or written, 3 a file is invalid,\n"
+    "4 diff found a difference\n";
 
 int run(const std::vector<std::string>& arguments) {
     if (arguments.empty()) {
@@ -38,12 +49,15 @@ int run(const std::vector<std::string>& arguments) {
     if (command == "info") return run_info(rest);
     if (command == "dump") return run_dump(rest);
     if (command == "preview") return run_preview(rest);
+    if (command == "strip") return run_strip(rest);
+    if (command == "diff") return run_diff(rest);
+    if (command == "issues") return run_issues(rest);
     if (command == "--help" || command == "-h" || command == "help") {
         std::fputs(usage, stdout);
         return exit_valid;
     }
     if (command == "--version") {
-        std::puts("drtv 0.1.0, sector format 1.1");
+        std::puts("drtv 0.1.0, sector format 1.2");
         return exit_valid;
     }
     complain("unknown command \"" + command + "\"; drtv --help lists them");

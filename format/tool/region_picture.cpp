@@ -1,7 +1,10 @@
 #include "region_picture.h"
 
+#include "commands.h"
+
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace drtv::tool {
 namespace {
@@ -11,12 +14,7 @@ constexpr double background_reach_m = 12;  // a pixel farther than this from eve
 constexpr double dot_radius_m = 2.1;
 constexpr Float3 empty_colour = {0.012f, 0.014f, 0.02f};
 
-struct Dot {
-    double x_m = 0, y_m = 0, z_m = 0;
-    float sky_visibility = 0;  // average of the three upward directions
-    ProbeKind kind = ProbeKind::ground;
-    Float3 colour{};  // linear
-};
+constexpr std::size_t max_covered_sectors = std::size_t{1} << 18;
 
 struct Extent {
     int i0, j0, i1, j1;  // sectors, half open
@@ -28,13 +26,14 @@ struct Extent {
     [[nodiscard]] double y_m(std::size_t py) const { return j1 * sector_size_m - (static_cast<double>(py) + 0.5) * metres_per_pixel; }
 };
 
-Extent measure(const std::vector<Sector>& sectors, double metres_per_pixel) {
-    Extent e{sectors[0].i, sectors[0].j, sectors[0].i + 1, sectors[0].j + 1, metres_per_pixel, 0, 0};
-    for (const Sector& s : sectors) {
-        e.i0 = std::min(e.i0, s.i);
-        e.j0 = std::min(e.j0, s.j);
-        e.i1 = std::max(e.i1, s.i + 1);
-        e.j1 = std::max(e.j1, s.j + 1);
+Extent measure(const RegionPicture& picture, double metres_per_pixel) {
+    const auto [i, j] = picture.sectors.front();
+    Extent e{i, j, i + 1, j + 1, metres_per_pixel, 0, 0};
+    for (const auto& [si, sj] : picture.sectors) {
+        e.i0 = std::min(e.i0, si);
+        e.j0 = std::min(e.j0, sj);
+        e.i1 = std::max(e.i1, si + 1);
+        e.j1 = std::max(e.j1, sj + 1);
     }
     const double side_m = std::max(e.i1 - e.i0, e.j1 - e.j0) * double{sector_size_m};
     // However far apart the sectors lie, the picture stays under 64 megapixels.
@@ -75,21 +74,6 @@ class Buckets {
     std::size_t columns_, rows_;
     std::vector<std::vector<const Dot*>> buckets_;
 };
-
-std::vector<Dot> gather_dots(const std::vector<Sector>& sectors, DotQuantity quantity) {
-    std::vector<Dot> dots;
-    for (const Sector& sector : sectors) {
-        for (std::size_t n = 0; n < sector.probes.size(); ++n) {
-            const Probe& probe = sector.probes[n];
-            const Float3 p = position_m(sector, probe);
-            Dot dot{p[0], p[1], p[2], 0, probe.kind, {}};
-            for (std::size_t b = 0; b < 3; ++b) dot.sky_visibility += decode_fixed(probe.sky_visibility[b], sky_visibility_scale) / 3;
-            dot.colour = dot_colour(sector, n, dot.sky_visibility, quantity);
-            dots.push_back(dot);
-        }
-    }
-    return dots;
-}
 
 struct Ground {
     float weight = 0, height_m = 0, sky_visibility = 0;
@@ -182,18 +166,29 @@ void draw_dots(Image& image, const Extent& extent, std::vector<Dot> dots) {
 
 }  // namespace
 
-std::size_t covered_sectors(const std::vector<Sector>& sectors) {
-    const Extent e = measure(sectors, 1000);
-    return static_cast<std::size_t>(e.i1 - e.i0) * static_cast<std::size_t>(e.j1 - e.j0);
+void RegionPicture::add(const Sector& sector, const std::function<Float3(std::size_t, float)>& colour) {
+    sectors.push_back({sector.i, sector.j});
+    for (std::size_t n = 0; n < sector.probes.size(); ++n) {
+        const Probe& probe = sector.probes[n];
+        const Float3 p = position_m(sector, probe);
+        Dot dot{p[0], p[1], p[2], 0, probe.kind, {}};
+        for (std::size_t b = 0; b < 3; ++b) dot.sky_visibility += decode_fixed(probe.sky_visibility[b], sky_visibility_scale) / 3;
+        dot.colour = colour(n, dot.sky_visibility);
+        dots.push_back(dot);
+    }
 }
 
-Image draw_region(const std::vector<Sector>& sectors, const PictureOptions& options) {
-    const Extent extent = measure(sectors, options.metres_per_pixel);
-    const std::vector<Dot> dots = gather_dots(sectors, options.dots);
+std::optional<Image> draw(const RegionPicture& picture, double metres_per_pixel) {
+    const Extent extent = measure(picture, metres_per_pixel);
+    const std::size_t covered = static_cast<std::size_t>(extent.i1 - extent.i0) * static_cast<std::size_t>(extent.j1 - extent.j0);
+    if (covered > max_covered_sectors) {
+        complain("the sectors lie too far apart for one picture: the rectangle around them has " + std::to_string(covered) + " sectors, the limit is " + std::to_string(max_covered_sectors));
+        return std::nullopt;
+    }
     Image image(extent.width, extent.height);
-    draw_background(image, extent, Buckets(extent, dots));
+    draw_background(image, extent, Buckets(extent, picture.dots));
     draw_sector_lines(image, extent);
-    draw_dots(image, extent, dots);
+    draw_dots(image, extent, picture.dots);
     return image;
 }
 

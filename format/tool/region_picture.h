@@ -1,27 +1,34 @@
 // A region of sectors from above: probes as dots over a shaded map of sky visibility.
 #pragma once
 
-#include "dot_colour.h"
 #include "png_writer.h"
 
 #include <drtv/sector.h>
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
 namespace drtv::tool {
 
-struct PictureOptions {
-    double metres_per_pixel = 0;  // 0: so that the longer side has about 1,600 pixels
-    DotQuantity dots = DotQuantity::relit;
+struct Dot {
+    double x_m = 0, y_m = 0, z_m = 0;
+    float sky_visibility = 0;  // average of the three upward directions
+    ProbeKind kind = ProbeKind::ground;
+    Float3 colour{};  // linear
 };
 
-// The rectangle around all sectors, in sectors. REQUIRES: at least one sector.
-[[nodiscard]] std::size_t covered_sectors(const std::vector<Sector>& sectors);
+struct RegionPicture {
+    std::vector<std::array<std::int32_t, 2>> sectors;
+    std::vector<Dot> dots;
 
-inline constexpr std::size_t max_covered_sectors = std::size_t{1} << 18;
+    // All probes of a sector; `colour` is asked with a probe's index and sky visibility.
+    void add(const Sector& sector, const std::function<Float3(std::size_t, float)>& colour);
+};
 
-// REQUIRES: at least one sector, covered_sectors(sectors) <= max_covered_sectors.
-[[nodiscard]] Image draw_region(const std::vector<Sector>& sectors, const PictureOptions& options);
+// At 0 metres a pixel the longer side has about 1,600 pixels. Nothing, and a complaint, where the sectors lie too far apart for one
+// picture. REQUIRES: at least one sector.
+[[nodiscard]] std::optional<Image> draw(const RegionPicture& picture, double metres_per_pixel);
 
 }  // namespace drtv::tool

@@ -77,7 +77,7 @@ TEST_P(DamagedSector, RandomDamageUnderRightChecksumsIsRejectedOrASector) {
         const Bytes damaged = random() % 8 == 0 ? edit.as_is() : edit.sealed();
         Sector read;
         const ReadStatus status = read_sector(damaged, read);
-        const auto findings = validate_sector(damaged);
+        const auto findings = validate_sector(damaged).findings;
         for (const Finding& finding : findings) ASSERT_LE(finding.offset, damaged.size());
         if (!status.ok()) {
             ASSERT_LE(status.offset, damaged.size());

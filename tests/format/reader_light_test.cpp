@@ -106,12 +106,12 @@ INSTANTIATE_TEST_SUITE_P(, LightSectionReader, testing::ValuesIn(cases), [](cons
 // What these kinds held in a file of version 1.0 is anything.
 TEST(LightSectionVersions, FileOfVersion10WithTheirKindsIsReadAsBefore) {
     Bytes file = golden_bytes();
-    for (const std::uint16_t kind : light_kinds) file = with_one_more(file, {kind, 1, 3, 5, {1, 2, 3}});
+    for (std::uint16_t kind = 7; kind <= 10; ++kind) file = with_one_more(file, {kind, 1, 3, 5, {1, 2, 3}});
     Sector sector;
     const ReadStatus status = read_sector(file, sector);
     EXPECT_TRUE(status.ok()) << status.message;
     EXPECT_EQ(sector, golden_sector());
-    EXPECT_TRUE(validate_sector(file).empty());
+    EXPECT_TRUE(validate_sector(file).valid());
     EXPECT_FALSE(read_sector(Edit(file).u16(at::minor, 1).sealed(), sector).ok());
 }
 
@@ -124,7 +124,7 @@ TEST(LightSectionVersions, SectionOfALaterVersionIsIgnored) {
     const ReadStatus status = read_sector(file, sector);
     EXPECT_TRUE(status.ok()) << status.message;
     EXPECT_EQ(sector, expected);
-    EXPECT_TRUE(validate_sector(file).empty());
+    EXPECT_TRUE(validate_sector(file).valid());
 }
 
 TEST(LightSectionVersions, EachSectionStandsAlone) {

@@ -132,7 +132,9 @@ ReadError after(ReadError error) {
         case ReadError::bad_table: return ReadError::checksum_mismatch;
         case ReadError::checksum_mismatch: return ReadError::missing_section;
         case ReadError::missing_section: return ReadError::bad_section;
-        case ReadError::bad_section: return ReadError::none;
+        case ReadError::bad_section:
+        case ReadError::compressed:  // these two: view_test.cpp
+        case ReadError::misaligned: return ReadError::none;
     }
     return ReadError::none;
 }
@@ -152,14 +154,14 @@ TEST(SectorReaderOffsets, PointAtTheFirstByteOfAPackedSection) {
 // What a later minor version may bring: an unknown section, of any version and codec, anywhere in the file.
 TEST(SectorReaderVersions, NewerMinorWithUnknownSectionsIsRead) {
     std::vector<Section> sections = sections_of(good);
-    sections.insert(sections.begin() + 2, {10, 1, 0, 3, {1, 2, 3}});
+    sections.insert(sections.begin() + 2, {11, 1, 0, 3, {1, 2, 3}});
     sections.push_back({0xFFFF, 9, 200, 1u << 24, {4, 5}});
     const Bytes file = Edit(with_sections(good, sections)).u16(at::minor, 5).sealed();
     Sector sector;
     const ReadStatus status = read_sector(file, sector);
     EXPECT_TRUE(status.ok()) << status.message;
     EXPECT_EQ(sector, golden_sector());
-    EXPECT_TRUE(validate_sector(file).empty());
+    EXPECT_TRUE(validate_sector(file).valid());
     std::vector<SectionEntry> entries;
     ASSERT_TRUE(read_section_table(file, entries).ok());
     ASSERT_EQ(entries.size(), 8u);
@@ -167,7 +169,7 @@ TEST(SectorReaderVersions, NewerMinorWithUnknownSectionsIsRead) {
 }
 
 TEST(SectorReaderVersions, UnknownSectionIsStillCheckedAgainstItsChecksum) {
-    const Bytes file = with_one_more(good, {10, 1, 0, 3, {1, 2, 3}});
+    const Bytes file = with_one_more(good, {1000, 1, 0, 3, {1, 2, 3}});
     Sector sector;
     EXPECT_EQ(read_sector(Edit(file).u8(file.size() - 1, 9).as_is(), sector).error, ReadError::checksum_mismatch);
 }
@@ -203,8 +205,8 @@ TEST(SectorReaderLimits, ExtremesAreRead) {
 }
 
 TEST(SectionNames, AreThoseOfTheSpecification) {
-    constexpr std::array<std::string_view, 11> names = {"unknown", "bake", "positions", "sky visibility", "transfer", "grid", "statistics",
-                                                        "static irradiance", "local transfer", "convergence", "unknown"};
+    constexpr std::array<std::string_view, 12> names = {"unknown", "bake", "positions", "sky visibility", "transfer", "grid", "statistics",
+                                                        "static irradiance", "local transfer", "convergence", "interiors", "unknown"};
     for (std::uint16_t kind = 0; kind < names.size(); ++kind) EXPECT_EQ(name_of_section(kind), names[kind]);
 }
 

@@ -40,7 +40,7 @@ inline void expect_rejected(const Rejection& rejection) {
     EXPECT_LE(status.offset, file.size());
     EXPECT_NE(status.message.find(rejection.words), std::string::npos) << status.message;
     EXPECT_EQ(sector, golden_sector()) << "a failed read must leave the sector as it was";
-    EXPECT_EQ(validate_sector(file).size(), 1u);
+    EXPECT_EQ(validate_sector(file).findings.size(), 1u);
 }
 
 }  // namespace drtv::test

@@ -114,6 +114,7 @@ Bytes stored_of(const Bytes& file, std::uint16_t kind) {
 
 Bytes golden_bytes() { return write_sector(golden_sector()); }
 Bytes golden_bytes_1_1() { return write_sector(golden_sector_1_1()); }
+Bytes golden_bytes_1_2() { return write_sector(golden_sector_1_2()); }
 
 Bytes read_test_file(const std::string& path) {
     std::ifstream in(path, std::ios::binary);

@@ -73,6 +73,7 @@ class Edit {
 // The golden file's bytes: what write_sector makes of golden_sector().
 [[nodiscard]] Bytes golden_bytes();
 [[nodiscard]] Bytes golden_bytes_1_1();
+[[nodiscard]] Bytes golden_bytes_1_2();
 
 // A whole file from disk; empty when it cannot be read.
 [[nodiscard]] Bytes read_test_file(const std::string& path);

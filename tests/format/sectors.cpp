@@ -1,5 +1,6 @@
 #include "tests/format/sectors.h"
 
+#include <algorithm>
 #include <random>
 
 namespace drtv::test {
@@ -39,6 +40,25 @@ class Random {
 };
 
 }  // namespace
+
+void fill_grid(Sector& sector, const std::function<std::size_t(std::size_t)>& choose) {
+    constexpr std::size_t considered = 4;
+    sector.grid.cells.fill(no_probe);
+    for (std::size_t cell = 0; cell < grid_cell_count && !sector.probes.empty(); ++cell) {
+        const std::array<std::int64_t, 3> index = {static_cast<std::int64_t>(cell % 16), static_cast<std::int64_t>(cell / 16 % 16), static_cast<std::int64_t>(cell / 256)};
+        const std::int64_t height = sector.grid.cell_height_units;
+        std::vector<std::pair<double, std::size_t>> nearest;
+        for (std::size_t p = 0; p < sector.probes.size(); ++p) {
+            const auto& position = sector.probes[p].position;
+            const std::int64_t z = std::int64_t{sector.z_origin_units} + (std::int64_t{position[2]} << sector.z_shift) - sector.grid.z_origin_units;
+            const auto dx = static_cast<double>(position[0] - (4096 * index[0] + 2048)), dy = static_cast<double>(position[1] - (4096 * index[1] + 2048));
+            const auto dz = static_cast<double>(z - (height * index[2] + height / 2));
+            nearest.emplace_back(dx * dx + dy * dy + dz * dz, p);
+        }
+        std::ranges::sort(nearest);
+        sector.grid.cells[cell] = static_cast<std::uint8_t>(nearest[choose(std::min(considered, nearest.size()))].second);
+    }
+}
 
 Sector golden_sector() {
     Sector sector;
@@ -99,6 +119,31 @@ Sector golden_sector_1_1() {
     return sector;
 }
 
+Sector golden_sector_1_2() {
+    Sector sector = golden_sector_1_1();
+    // Around probe 1 at (-16, 160, 10) m and probe 2 at (-16, 176, 11) m.
+    sector.interiors = {box_interior({-20480, 159744, 9216}, {0, 0, 0}, {8192, 8192, 4096}), box_interior({-24576, 172032, 8192}, {0, 64, 128}, {1024, 1088, 640})};
+    sector.interiors[0].probe = 1;
+    sector.interiors[1].probe = 2;
+    sector.interiors[1].shift = 4;
+    // A roof: one more vertex over the middle, so that parts do not end at multiples of 16.
+    Interior& roofed = sector.interiors[1];
+    roofed.vertices.push_back({512, 576, 700});
+    std::erase(roofed.triangles, std::array<std::uint16_t, 3>{4, 5, 7});
+    std::erase(roofed.triangles, std::array<std::uint16_t, 3>{4, 7, 6});
+    for (const auto& triangle : {std::array<std::uint16_t, 3>{4, 5, 8}, {5, 7, 8}, {7, 6, 8}, {6, 4, 8}}) roofed.triangles.push_back(triangle);
+    return sector;
+}
+
+Interior box_interior(const std::array<std::int32_t, 3>& origin_units, const std::array<std::uint16_t, 3>& low, const std::array<std::uint16_t, 3>& high) {
+    Interior interior;
+    interior.origin_units = origin_units;
+    // Corner k: bit 0 for x, 1 for y, 2 for z.
+    for (std::size_t k = 0; k < 8; ++k) interior.vertices.push_back({(k & 1) != 0 ? high[0] : low[0], (k & 2) != 0 ? high[1] : low[1], (k & 4) != 0 ? high[2] : low[2]});
+    interior.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return interior;
+}
+
 std::vector<LocalSource> neighbouring_sources(std::size_t probes) {
     std::vector<LocalSource> sources;
     for (std::size_t n = 0; n < probes; ++n) sources.push_back({1, 0, static_cast<std::uint8_t>(n), 0});
@@ -127,20 +172,21 @@ Sector random_sector(std::uint32_t seed, std::size_t probe_count) {
         // Distinct in x: no two probes stand at one place.
         probe.position = {static_cast<std::uint16_t>(256 * p + random.any<std::uint8_t>()), random.any<std::uint16_t>(), random.any<std::uint16_t>()};
         probe.kind = static_cast<ProbeKind>(random.between(0, 2));
+        for (std::size_t b = 0; b < 3; ++b) probe.sky_visibility[b] = static_cast<std::int16_t>(random.between(0, 32767));
         for (auto& channel : probe.transfer) {
-            for (auto& row : channel) {
-                row[0] = static_cast<std::int16_t>(random.between(-18487, 18487));
-                for (std::size_t i = 1; i < sh_count; ++i) row[i] = static_cast<std::int16_t>(random.between(-32026, 32026));
+            for (std::size_t b = 0; b < basis_count; ++b) {
+                // What the sky leaves of 1: 18487 codes are 1 / 3.5449. Band 1 within sqrt(3) of band 0, and Y2 not below 0.
+                const std::int64_t most = 18487 - (probe.sky_visibility[b] * std::int64_t{18487} * 789 / 32767 + 999) / 1000;
+                const std::int64_t y0 = random.between(0, most), y1 = std::min<std::int64_t>(y0 * 1732 / 1000, 32026);
+                channel[b] = {static_cast<std::int16_t>(y0), static_cast<std::int16_t>(random.between(-y1, y1)), static_cast<std::int16_t>(random.between(0, y1)),
+                              static_cast<std::int16_t>(random.between(-y1, y1))};
             }
         }
-        for (std::size_t b = 0; b < 3; ++b) probe.sky_visibility[b] = static_cast<std::int16_t>(random.between(0, 32767));
         sector.probes.push_back(probe);
     }
     sector.grid.z_origin_units = static_cast<std::int32_t>(random.between(-max_z_origin_units, max_z_origin_units));
     sector.grid.cell_height_units = static_cast<std::uint32_t>(random.between(1, max_cell_height_units));
-    for (std::uint8_t& cell : sector.grid.cells) {
-        cell = probe_count == 0 ? no_probe : static_cast<std::uint8_t>(random.between(0, static_cast<std::int64_t>(probe_count) - 1));
-    }
+    fill_grid(sector, [&](std::size_t nearest) { return static_cast<std::size_t>(random.between(0, static_cast<std::int64_t>(nearest) - 1)); });
     sector.bake.rays = static_cast<std::uint32_t>(random.between(1, UINT32_MAX));
     sector.bake.bounces = random.any<std::uint32_t>();
     sector.bake.reach_m = static_cast<float>(random.between(1, 1 << 20)) / 64;
@@ -203,6 +249,22 @@ Sector random_sector_1_1(std::uint32_t seed, std::size_t probe_count) {
     c.local_rays = random.any<std::uint32_t>();
     c.static_rays = random.any<std::uint64_t>();
     c.local_transfer_rays = random.any<std::uint64_t>();
+    return sector;
+}
+
+Sector random_sector_1_2(std::uint32_t seed, std::size_t probe_count) {
+    Sector sector = random_sector_1_1(seed, probe_count);
+    Random random(seed + 2000);
+    for (std::int64_t n = probe_count == 0 ? 0 : random.between(1, 3); n > 0; --n) {
+        const auto p = static_cast<std::uint8_t>(random.between(0, static_cast<std::int64_t>(probe_count) - 1));
+        const auto position = position_units(sector, sector.probes[p]);
+        const auto size = [&] { return static_cast<std::uint16_t>(random.between(1000, 65535)); };
+        // Around the probe: it stands 500 units from the origin's corner.
+        Interior interior = box_interior({position[0] - 500, position[1] - 500, position[2] - 500}, {0, 0, 0}, {size(), size(), size()});
+        interior.shift = static_cast<std::uint8_t>(random.between(0, max_interior_shift));
+        interior.probe = p;
+        sector.interiors.push_back(interior);
+    }
     return sector;
 }
 

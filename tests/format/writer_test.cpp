@@ -47,7 +47,7 @@ TEST_P(SectorWriter, WhatIsReadIsWrittenAsTheSameBytes) {
 
 TEST_P(SectorWriter, ValidSectorPassesTheValidator) {
     for (std::size_t count : probe_counts) {
-        for (const Finding& finding : validate_sector(write(make(5, count)))) {
+        for (const Finding& finding : validate_sector(write(make(5, count))).findings) {
             ADD_FAILURE() << count << " probes: " << finding.issue->code << ' ' << finding.path << ' ' << finding.message;
         }
     }
@@ -60,7 +60,7 @@ TEST_P(SectorWriter, SectionsAreAlignedAndInTheOrderOfKinds) {
     ASSERT_EQ(entries.size(), GetParam().sections);
     for (std::size_t n = 0; n < entries.size(); ++n) {
         EXPECT_EQ(entries[n].kind, n + 1);
-        EXPECT_EQ(entries[n].version, 1);
+        EXPECT_EQ(entries[n].version, entries[n].codec == 2 ? 2 : 1);
         EXPECT_EQ(entries[n].offset % 16, 0u);
     }
     EXPECT_EQ(entries.back().offset + entries.back().stored_bytes, bytes.size());
@@ -70,7 +70,8 @@ TEST_P(SectorWriter, FileHasTheLeastVersionThatItsSectionsNeed) { EXPECT_EQ(get(
 
 INSTANTIATE_TEST_SUITE_P(, SectorWriter,
                          testing::Values(Kind{"raw", Codec::raw, random_sector, 0, 6}, Kind{"zstd", Codec::zstd, random_sector, 0, 6},
-                                         Kind{"raw_1_1", Codec::raw, random_sector_1_1, 1, 9}, Kind{"zstd_1_1", Codec::zstd, random_sector_1_1, 1, 9}),
+                                         Kind{"raw_1_1", Codec::raw, random_sector_1_1, 1, 9}, Kind{"zstd_1_1", Codec::zstd, random_sector_1_1, 2, 9},
+                                         Kind{"raw_1_2", Codec::raw, random_sector_1_2, 2, 10}, Kind{"zstd_1_2", Codec::zstd, random_sector_1_2, 2, 10}),
                          [](const auto& kind) { return kind.param.name; });
 
 TEST(SectorSize, OfSeventyProbesIsWithinTheSeedsBudget) {

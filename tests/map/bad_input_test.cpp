@@ -90,6 +90,8 @@ TEST(BadInput, Buffers) {
     expect_broken({"buffer 0"}, [](Json& j) { j["buffers"][0]["uri"] = "data:text/plain,hello"; });
     expect_broken({"buffer 0"}, [](Json& j) { j["buffers"][0]["uri"] = "data:application/octet-stream;base64,####"; });
     expect_broken({"buffer 0", "uri"}, [](Json& j) { j["buffers"][0]["uri"] = 3; });
+    // Decodes to bytes that are not UTF-8 (found by fuzzing: the importer threw).
+    expect_broken({"buffer 0", "uri"}, [](Json& j) { j["buffers"][0]["uri"] = "%AA"; });
     expect_broken({"buffers"}, [](Json& j) { j["buffers"] = 3; });
     expect_broken({"buffer 0"}, [](Json& j) { j["buffers"][0] = 3; });
     expect_broken({"bufferView 1", "buffer", "7"}, [](Json& j) { j["bufferViews"][1]["buffer"] = 7; });

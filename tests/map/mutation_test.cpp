@@ -2,6 +2,7 @@
 // would show.
 #include "tests/map/gltf_builder.h"
 #include "tests/map/import_checks.h"
+#include "tests/map/specimen.h"
 
 #include <chrono>
 #include <functional>
@@ -11,22 +12,6 @@ namespace drtv::test {
 namespace {
 
 constexpr unsigned seed = 20240613;
-
-// A little of everything, in about 3 KiB.
-GltfBuilder specimen() {
-    GltfBuilder b;
-    const int texture = b.add_texture({2, 2, std::vector<std::uint8_t>(16, 99)}, {{"wrapS", 33071}});
-    const int material = b.add_material({.mask_cutoff = 0.5, .texture = texture});
-    Shape tinted = ground(3);
-    tinted.colours.assign(4, glm::vec4(0.5f));
-    b.add_node({.mesh = b.add_mesh(tinted, material), .rotation = glm::dvec4(0, 0.6, 0, 0.8), .name = "g", .role = "vegetation"});
-    b.add_instances(b.add_mesh(triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})), {{1, 2, 3}, {4, 5, 6}});
-    b.add_node({.light = b.add_light(Json::parse(R"({"type": "spot", "spot": {"innerConeAngle": 0.1}})")), .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}});
-    b.add_node({.children = {0}, .role = "probe"});
-    const int sparse = b.add_view(std::vector<std::uint8_t>{1}), values = b.add_view(std::vector<glm::vec3>{{9, 9, 9}});
-    b.json["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", sparse}, {"componentType", gltf_u8}}}, {"values", {{"bufferView", values}}}};
-    return b;
-}
 
 void expect_map_or_sentence(const FileBytes& bytes) {
     const auto start = std::chrono::steady_clock::now();
@@ -38,6 +23,7 @@ void expect_map_or_sentence(const FileBytes& bytes) {
 TEST(Mutation, SpecimenIsSound) {
     EXPECT_EQ(expect_accepted(specimen().import()).objects.size(), 3u);
     EXPECT_EQ(expect_accepted(import_files({{"x", specimen().glb()}}, {"x"})).objects.size(), 3u);
+    EXPECT_EQ(expect_accepted(extended_specimen().import()).objects.size(), 2u);
 }
 
 TEST(Mutation, EveryPrefixOfAGlbIsRefused) {
@@ -78,6 +64,8 @@ void damage(const FileBytes& sound, int times, unsigned salt) {
 TEST(Mutation, DamagedGlbIsMapOrSentence) { damage(specimen().glb(), 4000, 1); }
 
 TEST(Mutation, DamagedGltfIsMapOrSentence) { damage(bytes_of(specimen().gltf()), 4000, 2); }
+
+TEST(Mutation, DamagedExtensionsAreMapOrSentence) { damage(extended_specimen().glb(), 4000, 4); }
 
 // Damage that keeps the JSON sound reaches deeper: each number, string and member is replaced in turn.
 void visit(Json& at, const std::function<void(Json&)>& edit) {

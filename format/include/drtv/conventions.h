@@ -30,6 +30,9 @@ inline constexpr std::array<Float3, basis_count> transfer_basis = {{{-0.408248f,
                                                                     {0.816497f, 0.0f, 0.577350f},
                                                                     {0.0f, 0.0f, -1.0f}}};
 
+// What an open sky of radiance 1 gives to a cosine around basis direction b: the part of it that is above the horizon.
+[[nodiscard]] constexpr float open_sky_share(std::size_t b) { return (1 + transfer_basis[b][2]) / 2; }
+
 // Real spherical harmonics of bands 0 and 1, no Condon-Shortley sign.
 inline constexpr float sh_y0 = 0.282095f;
 inline constexpr float sh_y1 = 0.488603f;

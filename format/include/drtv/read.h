@@ -23,6 +23,8 @@ enum class ReadError : std::uint8_t {
     checksum_mismatch,    // header or section bytes were changed
     missing_section,      // a required section is not there
     bad_section,          // a section's content breaks its rule
+    compressed,           // open_sector only: a section is not raw
+    misaligned,           // open_sector only: the bytes do not start at a multiple of 16
 };
 
 struct [[nodiscard]] ReadStatus {
@@ -43,9 +45,14 @@ enum class SectionKind : std::uint16_t {
     static_irradiance = 7,  // this and the following: format 1.1, optional
     local_transfer = 8,
     convergence = 9,
+    interiors = 10,  // format 1.2, optional
 };
 
-enum class Codec : std::uint8_t { raw = 0, zstd = 1 };
+enum class Codec : std::uint8_t {
+    raw = 0,
+    zstd = 1,
+    filtered = 2,  // zstd behind a filter (SPEC.md, section 5.10): local transfer of section version 2
+};
 
 // One line of the table of sections, as it stands in the file.
 struct SectionEntry {

@@ -122,6 +122,18 @@ struct Convergence {
     bool operator==(const Convergence&) const = default;
 };
 
+// A closed mesh; what is inside uses one probe (s56). Vertex v stands at the world position, in units of 2^-10 m,
+// origin_units + vertices[v] * 2^shift.
+struct Interior {
+    std::array<std::int32_t, 3> origin_units{};
+    std::uint8_t shift = 0;  // at most max_interior_shift
+    std::uint8_t probe = 0;  // of this sector
+    std::vector<std::array<std::uint16_t, 3>> vertices;
+    std::vector<std::array<std::uint16_t, 3>> triangles;  // indices of vertices, counter-clockwise seen from outside
+
+    bool operator==(const Interior&) const = default;
+};
+
 struct Sector {
     std::int32_t i = 0, j = 0;        // world square [64 i, 64 i + 64) x [64 j, 64 j + 64)
     std::int32_t z_origin_units = 0;  // height of position z = 0, 2^-10 m
@@ -134,6 +146,8 @@ struct Sector {
     std::vector<StaticIrradiance> static_irradiance;  // empty or one a probe
     std::optional<LocalTransfer> local_transfer;
     std::optional<Convergence> convergence;
+    // Of format 1.2, optional:
+    std::vector<Interior> interiors;  // at most max_interiors
 
     bool operator==(const Sector&) const = default;
 };
@@ -143,6 +157,11 @@ inline constexpr std::int32_t max_sector_coordinate = 1 << 14;
 inline constexpr std::uint8_t max_z_shift = 10;
 inline constexpr std::int32_t max_z_origin_units = 1 << 30;         // of the sector and of the grid
 inline constexpr std::uint32_t max_cell_height_units = 1u << 24;   // so that 16 cells fit 32 bits too
+inline constexpr std::size_t max_interiors = 1024;
+inline constexpr std::size_t max_interior_vertices = 1u << 16;  // of one interior
+inline constexpr std::size_t max_interior_triangles = 1u << 18;  // of all together
+inline constexpr std::uint8_t max_interior_shift = 10;
+inline constexpr std::int32_t max_interior_origin_units = (1 << 30) + (1 << 27);  // 131 km beyond the farthest sector
 
 // World position of a probe in units of 2^-10 m, exact.
 [[nodiscard]] std::array<std::int32_t, 3> position_units(const Sector& sector, const Probe& probe);

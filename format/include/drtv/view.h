@@ -1,0 +1,79 @@
+// A sector used where it lies: a raw sector file in memory, mapped or loaded, without a copy. For games.
+#pragma once
+
+#include <drtv/read.h>
+#include <drtv/sector.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace drtv {
+
+static_assert(std::endian::native == std::endian::little, "the file's integers are little-endian and used as they lie");
+
+// What stands in the file, byte for byte (SPEC.md, section 5).
+struct StoredPosition {
+    std::array<std::uint16_t, 3> position;
+    ProbeKind kind;
+    std::uint8_t reserved;
+};
+struct StoredGrid {
+    std::int32_t z_origin_units;
+    std::uint32_t cell_height_units;
+    std::uint64_t reserved;
+    std::array<std::uint8_t, grid_cell_count> cells;
+};
+struct StoredReceiver {
+    std::uint32_t first_pair;
+    std::int8_t exponent;
+    std::array<std::uint8_t, 3> reserved;
+};
+struct StoredInterior {
+    std::array<std::int32_t, 3> origin_units;
+    std::uint8_t shift, probe;
+    std::array<std::uint8_t, 2> reserved;
+    std::uint32_t first_vertex, vertex_count, first_triangle, triangle_count;
+};
+static_assert(sizeof(StoredPosition) == 8 && sizeof(StoredGrid) == 4112 && sizeof(StoredReceiver) == 8 && sizeof(StoredInterior) == 32);
+
+using TransferCodes = std::array<std::array<std::array<std::int16_t, sh_count>, basis_count>, channel_count>;  // [c][b][i]
+using VisibilityCodes = std::array<std::int16_t, basis_count>;                                                // [b]
+
+// Points into the file's bytes and lives no longer than they do. Probe p of one span is probe p of every other. Spans of
+// optional sections are empty where the file has none.
+struct SectorView {
+    std::int32_t i = 0, j = 0;
+    std::int32_t z_origin_units = 0;
+    std::uint8_t z_shift = 0;
+    std::size_t probe_count = 0;
+
+    std::span<const StoredPosition> positions;
+    std::span<const VisibilityCodes> sky_visibility;
+    std::span<const TransferCodes> transfer;
+    const StoredGrid* grid = nullptr;
+    std::span<const LightCodes> static_irradiance;       // [c][b], scale 2^exponent
+    std::span<const std::int8_t> static_exponents;
+    std::span<const LocalSource> local_sources;
+    std::span<const StoredReceiver> local_receivers;
+    std::span<const std::uint8_t> local_masks;           // local_mask_bytes a receiver
+    std::size_t local_mask_bytes = 0;
+    std::span<const LightCodes> local_pairs;             // [c][i], scale 2^(receiver's + source's exponent)
+    std::span<const StoredInterior> interiors;
+    std::span<const std::array<std::uint16_t, 3>> interior_vertices;   // all interiors'
+    std::span<const std::array<std::uint16_t, 3>> interior_triangles;  // indices within their interior's vertices
+};
+
+// The sector that lies in `bytes`. Checks all that read_sector checks, untrusted bytes are safe. Allocates nothing, unless it
+// fails (the message). A file with a compressed section fails with `compressed`: see unpack_sector. On error `view` is left
+// as it was. REQUIRES for success: `bytes` starts at a multiple of 16 (a mapped file does), else `misaligned`.
+ReadStatus open_sector(std::span<const std::uint8_t> bytes, SectorView& view);
+
+// The same file with every section raw. Of sections that this reader does not know, nothing is kept. On error `raw_file` is left
+// as it was.
+ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& raw_file);
+
+}  // namespace drtv

@@ -1,0 +1,47 @@
+// The sections of a file, decoded and checked: what reading, opening and unpacking share.
+#pragma once
+
+#include <drtv/read.h>
+#include <drtv/sector.h>
+
+#include "layout.h"
+#include "section_table.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace drtv {
+
+// One section's decoded bytes. They lie in the file where the section is raw.
+struct Section {
+    std::span<const std::uint8_t> raw;
+    layout::Place place;
+    bool present = false;  // and of a version that this reader knows
+};
+
+inline constexpr std::size_t known_kinds = 11;  // kind 0 is none
+
+struct Sections {
+    std::size_t probe_count = 0;
+    std::array<Section, known_kinds> of_kind;
+
+    [[nodiscard]] const Section& of(SectionKind kind) const { return of_kind[static_cast<std::size_t>(kind)]; }
+};
+
+// Where the decoded bytes of compressed sections lie.
+using Unpacked = std::array<std::vector<std::uint8_t>, known_kinds>;
+
+// Checks the whole file by SPEC.md section 6, and gives its table too. With `unpacked` null, a compressed section fails. Allocates for compressed
+// sections and for messages only.
+ReadStatus load_sections(std::span<const std::uint8_t> file, SectionTable& table, Unpacked* unpacked, Sections& sections);
+
+// The sector that they hold. REQUIRES: load_sections gave them for this file.
+void copy_sector(std::span<const std::uint8_t> file, const Sections& sections, Sector& sector);
+
+// The rules for what is in a section, once it is decoded and has a size that it may have.
+ReadStatus check_content(SectionKind kind, const Section& section, std::size_t probe_count);
+
+}  // namespace drtv

@@ -1,0 +1,89 @@
+// The filter of local transfer against its description, and back and forth over everything that codes can be.
+#include "format/src/local_filter.h"
+#include "tests/format/sector_bytes.h"
+#include "tests/format/sectors.h"
+
+#include <drtv/write.h>
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace drtv::test {
+namespace {
+
+Bytes local_section(const Sector& sector) { return stored_of(write_sector(sector), 8); }
+
+Bytes back(const Bytes& filtered, std::size_t probes, std::size_t raw_bytes) {
+    Bytes raw;
+    EXPECT_TRUE(unfilter_local(filtered, probes, raw_bytes, raw));
+    return raw;
+}
+
+TEST(LocalFilter, GivesBackEverySection) {
+    for (std::uint32_t seed = 0; seed < 12; ++seed) {
+        const Bytes raw = local_section(random_sector_1_1(seed, 1 + seed * 20));
+        EXPECT_EQ(back(filter_local(raw, 1 + seed * 20), 1 + seed * 20, raw.size()), raw) << seed;
+    }
+}
+
+// Invalid codes too: a reader must give what the file says.
+TEST(LocalFilter, GivesBackCodesOfAnyKind) {
+    std::mt19937 random(7);
+    Sector sector = random_sector_1_1(5, 40);
+    constexpr std::array<std::int16_t, 9> telling = {0, 1, -1, 2, 255, -256, 32767, -32767, INT16_MIN};
+    for (LightCodes& pair : sector.local_transfer->pairs) {
+        const unsigned shift = random() % 16;
+        for (auto& channel : pair) {
+            for (std::int16_t& q : channel) q = random() % 2 == 0 ? telling[random() % telling.size()] : static_cast<std::int16_t>(static_cast<unsigned>(random()) << shift);
+        }
+    }
+    const Bytes raw = local_section(sector);
+    EXPECT_EQ(back(filter_local(raw, 40), 40, raw.size()), raw);
+}
+
+// Two pairs by hand, after SPEC.md section 5.10.
+TEST(LocalFilter, PutsBytesWhereThePageSays) {
+    Sector sector = golden_sector();
+    LocalTransfer& local = sector.local_transfer.emplace();
+    local.sources = {{0, 0, 0, 0}, {0, 0, 1, 0}};
+    local.receivers.resize(2);
+    // Shift 4: green (100, -20, 30, 40), red (52, -10, 15, 21), blue (90, 0, 0, 0). The largest has 7 bits.
+    add_pairs(local, 0, {1}, {{{52 * 16, -10 * 16, 15 * 16, 21 * 16}, {100 * 16, -20 * 16, 30 * 16, 40 * 16}, {90 * 16, 0, 0, 0}}});
+    // Shift 0, 9 bits. The sums are now green 1 - 0 + 100 = 101, red 53, blue 91.
+    add_pairs(local, 1, {0}, {{{160, 0, 0, 0}, {300, 0, 1, 0}, {270, 0, 0, 0}}});
+    const Bytes raw = local_section(sector), filtered = filter_local(raw, 2);
+    const std::size_t codes = raw.size() - 2 * 24;
+    ASSERT_EQ(filtered.size(), codes + 2 * 26);
+    EXPECT_TRUE(std::equal(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(codes), filtered.begin()));
+    const std::uint8_t* at = filtered.data() + codes;
+    EXPECT_EQ(Bytes(at, at + 4), (Bytes{4, 0, 7, 9}));
+    const auto zigzag = [](int value) { return static_cast<std::uint16_t>(value < 0 ? -2 * value - 1 : 2 * value); };
+    // Red is foretold from 1 : 1 sums as 100, its band 1 as round(-20 * 52 / 100) = -10, 16, 21; blue as 100, then -18, 27, 36.
+    const std::array<int, 12> first = {100, -20, 30, 40, 52 - 100, 0, -1, 0, 90 - 100, 18, -27, -36};
+    // (300 * 53 + 50) / 101 = 157; blue (300 * 91 + 50) / 101 = 270. Band 1 of red: 1 * 160 / 300 rounds to 1.
+    const std::array<int, 12> second = {300, 0, 1, 0, 160 - 157, 0, -1, 0, 270 - 270, 0, -1, 0};
+    const std::uint8_t *high = at + 4, *low = high + 24;
+    for (std::size_t k = 0; k < 12; ++k) {
+        EXPECT_EQ(high[k] << 8 | low[k], zigzag(first[k])) << k;
+        EXPECT_EQ(high[12 + k] << 8 | low[12 + k], zigzag(second[k])) << k;
+    }
+}
+
+TEST(LocalFilter, AnyBytesOfTheRightSizeGiveASectionOrNothing) {
+    std::mt19937 random(11);
+    const Bytes raw = local_section(random_sector_1_1(4, 9));
+    const Bytes filtered = filter_local(raw, 9);
+    std::size_t sections = 0;
+    for (int round = 0; round < 3000; ++round) {
+        Bytes damaged = filtered;
+        for (int n = 0; n < 3; ++n) damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
+        Bytes out;
+        sections += unfilter_local(damaged, 9, raw.size(), out) ? 1u : 0u;
+        ASSERT_TRUE(out.empty() || out.size() == raw.size());
+    }
+    EXPECT_GT(sections, 1000u);
+}
+
+}  // namespace
+}  // namespace drtv::test

@@ -1,0 +1,125 @@
+// Sectors used where they lie: the same numbers as a reader gives, and not one allocation.
+#include "tests/format/allocation_count.h"
+#include "tests/format/sector_bytes.h"
+#include "tests/format/sectors.h"
+
+#include <drtv/view.h>
+#include <drtv/write.h>
+
+#include <gtest/gtest.h>
+
+namespace drtv::test {
+namespace {
+
+SectorView open(const Bytes& file) {
+    SectorView view;
+    const ReadStatus status = open_sector(file, view);
+    EXPECT_TRUE(status.ok()) << status.message;
+    return view;
+}
+
+void expect_equal(const SectorView& view, const Sector& sector) {
+    EXPECT_EQ(view.i, sector.i);
+    EXPECT_EQ(view.j, sector.j);
+    EXPECT_EQ(view.z_origin_units, sector.z_origin_units);
+    EXPECT_EQ(view.z_shift, sector.z_shift);
+    ASSERT_EQ(view.probe_count, sector.probes.size());
+    for (std::size_t p = 0; p < view.probe_count; ++p) {
+        EXPECT_EQ(view.positions[p].position, sector.probes[p].position);
+        EXPECT_EQ(view.positions[p].kind, sector.probes[p].kind);
+        EXPECT_EQ(view.sky_visibility[p], sector.probes[p].sky_visibility);
+        EXPECT_EQ(view.transfer[p], sector.probes[p].transfer);
+    }
+    EXPECT_EQ(view.grid->z_origin_units, sector.grid.z_origin_units);
+    EXPECT_EQ(view.grid->cell_height_units, sector.grid.cell_height_units);
+    EXPECT_EQ(view.grid->cells, sector.grid.cells);
+    ASSERT_EQ(view.static_irradiance.size(), sector.static_irradiance.size());
+    for (std::size_t p = 0; p < view.static_irradiance.size(); ++p) {
+        EXPECT_EQ(view.static_irradiance[p], sector.static_irradiance[p].codes);
+        EXPECT_EQ(view.static_exponents[p], sector.static_irradiance[p].exponent);
+    }
+}
+
+void expect_equal_local(const SectorView& view, const LocalTransfer& local) {
+    EXPECT_TRUE(std::equal(view.local_sources.begin(), view.local_sources.end(), local.sources.begin(), local.sources.end()));
+    EXPECT_TRUE(std::equal(view.local_pairs.begin(), view.local_pairs.end(), local.pairs.begin(), local.pairs.end()));
+    ASSERT_EQ(view.local_receivers.size(), local.receivers.size());
+    for (std::size_t p = 0; p < local.receivers.size(); ++p) {
+        EXPECT_EQ(view.local_receivers[p].first_pair, local.receivers[p].first_pair);
+        EXPECT_EQ(view.local_receivers[p].exponent, local.receivers[p].exponent);
+        for (std::size_t k = 0; k < view.local_mask_bytes; ++k) EXPECT_EQ(view.local_masks[p * view.local_mask_bytes + k], local.receivers[p].sources[k]);
+    }
+}
+
+void expect_equal_interiors(const SectorView& view, const std::vector<Interior>& interiors) {
+    ASSERT_EQ(view.interiors.size(), interiors.size());
+    for (std::size_t n = 0; n < interiors.size(); ++n) {
+        const StoredInterior& stored = view.interiors[n];
+        EXPECT_EQ(stored.origin_units, interiors[n].origin_units);
+        EXPECT_EQ(stored.shift, interiors[n].shift);
+        EXPECT_EQ(stored.probe, interiors[n].probe);
+        const auto vertices = view.interior_vertices.subspan(stored.first_vertex, stored.vertex_count);
+        const auto triangles = view.interior_triangles.subspan(stored.first_triangle, stored.triangle_count);
+        EXPECT_TRUE(std::equal(vertices.begin(), vertices.end(), interiors[n].vertices.begin(), interiors[n].vertices.end()));
+        EXPECT_TRUE(std::equal(triangles.begin(), triangles.end(), interiors[n].triangles.begin(), interiors[n].triangles.end()));
+    }
+}
+
+TEST(SectorView, ShowsWhatAReaderReads) {
+    for (std::uint32_t seed = 0; seed < 12; ++seed) {
+        const Sector sector = random_sector_1_2(seed, 1 + 23 * seed);
+        const Bytes file = write_sector(sector);
+        const SectorView view = open(file);
+        expect_equal(view, sector);
+        expect_equal_local(view, *sector.local_transfer);
+        expect_equal_interiors(view, sector.interiors);
+    }
+}
+
+TEST(SectorView, OfAnEmptySectorIsEmpty) {
+    const Bytes file = write_sector(random_sector(1, 0));
+    const SectorView view = open(file);
+    EXPECT_EQ(view.probe_count, 0u);
+    EXPECT_TRUE(view.local_pairs.empty() && view.interiors.empty() && view.static_irradiance.empty());
+}
+
+TEST(SectorView, OpeningAllocatesNothing) {
+    const Bytes file = write_sector(random_sector_1_2(3, 70));
+    SectorView view;
+    const std::size_t before = allocation_count();
+    const ReadStatus status = open_sector(file, view);
+    const std::size_t after = allocation_count();
+    ASSERT_TRUE(status.ok());
+    EXPECT_EQ(after, before);
+    // The counter counts: a reader does allocate.
+    Sector sector;
+    ASSERT_TRUE(read_sector(file, sector).ok());
+    EXPECT_GT(allocation_count(), after);
+}
+
+TEST(SectorView, RefusesWhatItCannotUseInPlace) {
+    SectorView view;
+    view.i = 77;
+    const Bytes packed = write_sector(golden_sector_1_2(), {Codec::zstd});
+    EXPECT_EQ(open_sector(packed, view).error, ReadError::compressed);
+    Bytes shifted = golden_bytes_1_2();
+    shifted.insert(shifted.begin(), 8, std::uint8_t{0});
+    EXPECT_EQ(open_sector(std::span(shifted).subspan(8), view).error, ReadError::misaligned);
+    const Bytes cut = Edit(golden_bytes_1_2()).cut(3000).as_is();
+    EXPECT_EQ(open_sector(cut, view).error, ReadError::truncated);
+    EXPECT_EQ(view.i, 77) << "left as it was";
+}
+
+TEST(UnpackSector, GivesTheRawFile) {
+    for (const Sector& sector : {golden_sector(), golden_sector_1_1(), golden_sector_1_2(), random_sector_1_2(9, 70), random_sector(2, 0)}) {
+        Bytes raw = {1, 2, 3};
+        ASSERT_TRUE(unpack_sector(write_sector(sector, {Codec::zstd}), raw).ok());
+        EXPECT_EQ(raw, write_sector(sector));
+    }
+    Bytes untouched = {1, 2, 3};
+    EXPECT_FALSE(unpack_sector(Bytes{1, 2}, untouched).ok());
+    EXPECT_EQ(untouched, (Bytes{1, 2, 3}));
+}
+
+}  // namespace
+}  // namespace drtv::test
