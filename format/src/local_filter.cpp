@@ -51,25 +51,31 @@ class Predictor {
     std::array<std::uint32_t, channel_count> sums_ = {1, 1, 1};
 };
 
-// Where each pair's numbers stand in the planes: pairs of one class together, one number after the other.
+// How many bits a number is off a pair's class, about: green's band 0 one more for its sign, the others less, those foretold least.
+constexpr std::array<int, values_of_pair> bits_off = {1, -1, -1, -1, -2, -4, -4, -4, -2, -4, -4, -4};
+
+// Where each pair's numbers stand in the planes: one number of all pairs of a class together, groups of like size beside each other.
 class Places {
   public:
-    explicit Places(Bytes classes) : count_(classes.size()), rank_(classes.size()) {
-        for (const std::uint8_t c : classes) ++of_class_[c];
-        std::array<std::uint32_t, class_count> seen{};
-        for (std::size_t n = 0; n < count_; ++n) rank_[n] = seen[classes[n]]++;
+    explicit Places(Bytes classes) : rank_(classes.size()) {
+        std::array<std::uint32_t, class_count> of_class{};
+        for (std::size_t n = 0; n < classes.size(); ++n) rank_[n] = of_class[classes[n]]++;
         std::size_t at = 0;
-        for (std::size_t c = 0; c < class_count; ++c) {
-            first_[c] = at;
-            at += values_of_pair * of_class_[c];
+        for (int bits = *std::ranges::min_element(bits_off); bits < static_cast<int>(class_count) + *std::ranges::max_element(bits_off); ++bits) {
+            for (std::size_t c = 0; c < class_count; ++c) {
+                for (std::size_t k = 0; k < values_of_pair; ++k) {
+                    if (static_cast<int>(c) + bits_off[k] != bits) continue;
+                    first_[c][k] = at;
+                    at += of_class[c];
+                }
+            }
         }
     }
-    [[nodiscard]] std::size_t of(std::size_t pair, std::uint8_t its_class, std::size_t number) const { return first_[its_class] + number * of_class_[its_class] + rank_[pair]; }
+    [[nodiscard]] std::size_t of(std::size_t pair, std::uint8_t its_class, std::size_t number) const { return first_[its_class][number] + rank_[pair]; }
 
   private:
-    std::size_t count_;
     std::vector<std::uint32_t> rank_;
-    std::array<std::size_t, class_count> of_class_{}, first_{};
+    std::array<std::array<std::size_t, values_of_pair>, class_count> first_{};
 };
 
 }  // namespace

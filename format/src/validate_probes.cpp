@@ -74,6 +74,35 @@ bool is_among_nearest(const std::vector<double>& squared, std::size_t named) {
     return before < considered_probes;
 }
 
+// For each cell whether it names one of the probes nearest to its centre; false where it names none.
+std::array<bool, grid_cell_count> cells_of_near_probes(const Sector& sector) {
+    // In units from the grid's corner; whole numbers, whose squared distances a double holds exactly.
+    const std::size_t count = sector.probes.size();
+    std::vector<std::array<double, 3>> positions(count);
+    for (std::size_t p = 0; p < count; ++p) {
+        const auto& position = sector.probes[p].position;
+        const std::int64_t z = std::int64_t{sector.z_origin_units} + (std::int64_t{position[2]} << sector.z_shift) - sector.grid.z_origin_units;
+        positions[p] = {static_cast<double>(position[0]), static_cast<double>(position[1]), static_cast<double>(z)};
+    }
+    constexpr double width = sector_size_m * position_units_per_m / double{grid_size};
+    const auto height = static_cast<double>(sector.grid.cell_height_units);
+    const double middle = std::floor(height / 2);
+    std::array<bool, grid_cell_count> near{};
+    std::vector<double> level(count), squared(count);
+    for (std::size_t column = 0; column < grid_size * grid_size; ++column) {
+        const double x = width * static_cast<double>(column % grid_size) + width / 2, y = width * static_cast<double>(column / grid_size) + width / 2;
+        for (std::size_t p = 0; p < count; ++p) level[p] = (positions[p][0] - x) * (positions[p][0] - x) + (positions[p][1] - y) * (positions[p][1] - y);
+        for (std::size_t cz = 0; cz < grid_size; ++cz) {
+            const std::size_t cell = column + grid_size * grid_size * cz, named = sector.grid.cells[cell];
+            if (named >= count) continue;
+            const double z = height * static_cast<double>(cz) + middle;
+            for (std::size_t p = 0; p < count; ++p) squared[p] = level[p] + (positions[p][2] - z) * (positions[p][2] - z);
+            near[cell] = is_among_nearest(squared, named);
+        }
+    }
+    return near;
+}
+
 }  // namespace
 
 void check_settings(const Sector& sector, const layout::Place& place, Findings& findings) {
@@ -123,37 +152,19 @@ void check_transfer(const Sector& sector, const layout::Place& place, Findings& 
 }
 
 void check_grid(const Sector& sector, const layout::Place& place, Findings& findings) {
-    // In units from the grid's corner; whole numbers, whose squared distances a double holds exactly.
     const std::size_t count = sector.probes.size();
-    std::vector<std::array<double, 3>> positions(count);
-    for (std::size_t p = 0; p < count; ++p) {
-        const auto& position = sector.probes[p].position;
-        const std::int64_t z = std::int64_t{sector.z_origin_units} + (std::int64_t{position[2]} << sector.z_shift) - sector.grid.z_origin_units;
-        positions[p] = {static_cast<double>(position[0]), static_cast<double>(position[1]), static_cast<double>(z)};
-    }
-    constexpr double width = sector_size_m * position_units_per_m / double{grid_size};
-    const auto height = static_cast<double>(sector.grid.cell_height_units);
-    const double middle = std::floor(height / 2);
-    std::vector<double> level(count), squared(count);
-    for (std::size_t column = 0; column < grid_size * grid_size; ++column) {
-        const double x = width * static_cast<double>(column % grid_size) + width / 2, y = width * static_cast<double>(column / grid_size) + width / 2;
-        for (std::size_t p = 0; p < count; ++p) level[p] = (positions[p][0] - x) * (positions[p][0] - x) + (positions[p][1] - y) * (positions[p][1] - y);
-        for (std::size_t cz = 0; cz < grid_size; ++cz) {
-            const std::size_t cell = column + grid_size * grid_size * cz, named = sector.grid.cells[cell];
-            const auto add = [&](const Issue& issue, const auto& message) {
-                findings.add(issue, place.at(layout::grid_header_bytes + cell), static_cast<double>(named), [&] { return "grid.cells" + index(cell); }, message);
-            };
-            if (named == no_probe) {
-                if (count > 0) add(issue::grid_no_probe, [&] { return "names no probe, the sector has " + std::to_string(count); });
-                continue;
-            }
-            if (named >= count) {
-                add(issue::grid_reference, [&] { return "names probe " + std::to_string(named) + ", the sector has " + std::to_string(count); });
-                continue;
-            }
-            const double z = height * static_cast<double>(cz) + middle;
-            for (std::size_t p = 0; p < count; ++p) squared[p] = level[p] + (positions[p][2] - z) * (positions[p][2] - z);
-            if (!is_among_nearest(squared, named)) add(issue::grid_not_nearest, [&] { return "names probe " + std::to_string(named) + ", and four others are nearer to its centre"; });
+    const std::array<bool, grid_cell_count> near = cells_of_near_probes(sector);
+    for (std::size_t cell = 0; cell < grid_cell_count; ++cell) {
+        const std::size_t named = sector.grid.cells[cell];
+        const auto add = [&](const Issue& issue, const auto& message) {
+            findings.add(issue, place.at(layout::grid_header_bytes + cell), static_cast<double>(named), [&] { return "grid.cells" + index(cell); }, message);
+        };
+        if (named == no_probe) {
+            if (count > 0) add(issue::grid_no_probe, [&] { return "names no probe, the sector has " + std::to_string(count); });
+        } else if (named >= count) {
+            add(issue::grid_reference, [&] { return "names probe " + std::to_string(named) + ", the sector has " + std::to_string(count); });
+        } else if (!near[cell]) {
+            add(issue::grid_not_nearest, [&] { return "names probe " + std::to_string(named) + ", and four others are nearer to its centre"; });
         }
     }
 }

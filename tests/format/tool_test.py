@@ -6,8 +6,14 @@ import subprocess
 import sys
 import unittest
 
+import jsonschema
+
 import sector_file
 from tool_case import DRTV, GOLDEN, GOLDEN_1_1, GOLDEN_FOLDER, INVALID, UNREADABLE, USAGE, Tool, golden, rounded, seal
+
+
+FORMAT_FOLDER = os.path.join(os.path.dirname(__file__), "..", "..", "format")
+SCHEMA = os.path.join(FORMAT_FOLDER, "report.schema.json")
 
 
 class Usage(Tool):
@@ -15,10 +21,17 @@ class Usage(Tool):
         for arguments, words in [
                 ([], "usage: drtv"), (["fly"], 'unknown command "fly"'), (["validate"], "at least one file or folder"),
                 (["validate", "--fast", GOLDEN], 'unknown option "--fast"'), (["info"], "exactly one file"), (["info", GOLDEN, GOLDEN], "exactly one file"),
-                (["info", "--json"], "exactly one file"), (["dump", GOLDEN], "usage is: drtv dump FILE --json"), (["dump", "--json"], "usage is"),
+                (["info", "--json"], 'unknown option "--json"'), (["dump", GOLDEN], "usage is: drtv dump FILE --json"), (["dump", "--json"], "usage is"),
                 (["dump", GOLDEN, GOLDEN, "--json"], "usage is"), (["preview", GOLDEN], "usage is: drtv preview"), (["preview", "--out", "a.png"], "usage is"),
                 (["preview", GOLDEN, "--out"], "--out needs a value"), (["preview", GOLDEN, "--wide"], 'unknown option "--wide"'),
-                (["preview", GOLDEN, GOLDEN, "--out", "a.png"], "one too many")]:
+                (["preview", GOLDEN, GOLDEN, "--out", "a.png"], "one too many"), (["validate", GOLDEN, "--ignore"], "--ignore needs a value"),
+                (["validate", GOLDEN, "--ignore", "STRUCTURE"], 'there is no issue "STRUCTURE"; drtv issues lists them'),
+                (["validate", GOLDEN, "--quick", "--neighbours"], "does not go with --neighbours"), (["validate", GOLDEN, "--quick", "--full"], "with --full"),
+                (["validate", GOLDEN, "--max-findings", "0"], "--max-findings takes a number from 1 to 1000000, not \"0\""), (["issues", "x"], "no arguments"),
+                (["diff", GOLDEN], "two files or folders"), (["diff", GOLDEN, GOLDEN, "--png"], "--png needs a value"), (["strip", GOLDEN], "usage is: drtv strip"),
+                (["strip", GOLDEN, "--out", "x", "--keep", "transfer"], '"transfer" is no optional section'),
+                (["strip", GOLDEN, "--out", "x", "--keep", "none,all"], '"none" is no optional section'),
+                (["strip", GOLDEN, "--out", "x", "--codec", "lz4"], '--codec takes raw or zstd, not "lz4"')]:
             with self.subTest(arguments=arguments):
                 self.assertEqual(self.expect(USAGE, *arguments, err=words), "")
 
@@ -31,8 +44,8 @@ class Usage(Tool):
 
     def test_help_and_version_go_to_stdout(self):
         for word in ("--help", "-h", "help"):
-            self.expect(0, word, out="exit status: 0 valid, 1 wrong usage")
-        self.expect(0, "--version", out="sector format 1.1")
+            self.expect(0, word, out="exit status: 0 valid or equal, 1 wrong usage")
+        self.expect(0, "--version", out="sector format 1.2")
 
     def test_full_disk_behind_stdout_is_not_success(self):
         for arguments in (["dump", GOLDEN, "--json"], ["info", GOLDEN], ["validate", GOLDEN]):
@@ -44,7 +57,8 @@ class Usage(Tool):
 
 class Unreadable(Tool):
     def test_missing_file_exits_2(self):
-        for arguments in (["validate"], ["info"], ["dump", "--json"], ["preview", "--out", self.path("a.png")]):
+        for arguments in (["validate"], ["info"], ["dump", "--json"], ["preview", "--out", self.path("a.png")], ["diff", GOLDEN],
+                          ["strip", "--out", self.path("b.drtv")]):
             with self.subTest(arguments=arguments):
                 self.expect(UNREADABLE, *arguments, self.path("none.drtv"), err="none.drtv")
 
@@ -76,8 +90,9 @@ class Validate(Tool):
         self.assertIn("1 sector file checked, 1 invalid", stdout)
 
     def test_empty_file_and_other_files_exit_3(self):
-        for name, data in (("empty.drtv", b""), ("zero.drtv", bytes(5000)), ("text.drtv", b"hello"), ("cut.drtv", golden()[:100])):
-            self.expect(INVALID, "validate", self.write(name, data), out="error STRUCTURE at byte")
+        for name, data, code in (("empty.drtv", b"", "NOT_A_SECTOR_FILE"), ("zero.drtv", bytes(5000), "NOT_A_SECTOR_FILE"),
+                                 ("text.drtv", b"hello", "NOT_A_SECTOR_FILE"), ("cut.drtv", golden()[:100], "TRUNCATED")):
+            self.expect(INVALID, "validate", self.write(name, data), out=f"error {code} at byte")
 
     def test_other_major_version_is_refused_by_name(self):
         data = golden()
@@ -103,7 +118,7 @@ class Validate(Tool):
         broken = self.broken()
         report = json.loads(self.expect(INVALID, "validate", GOLDEN, broken, "--json"))
         self.assertEqual((report["checked"], report["invalid"]), (2, 1))
-        self.assertEqual(report["files"][0], {"file": GOLDEN, "valid": True, "findings": []})
+        self.assertEqual(report["files"][0], {"file": GOLDEN, "valid": True, "errors": 0, "warnings": 0, "truncated": False, "findings": []})
         finding = report["files"][1]["findings"][0]
         self.assertEqual((finding["code"], finding["severity"], finding["offset"], finding["path"]), ("CHECKSUM", "error", 336, ""))
         self.assertIn("does not match", finding["message"])
@@ -121,9 +136,217 @@ class Validate(Tool):
         self.assertTrue(report["files"][0]["file"].endswith('/\ufffd"\n.drtv'))
 
 
+class ValidateOptions(Tool):
+    def schema_checked(self, *arguments, exit_code):
+        report = json.loads(self.expect(exit_code, "validate", "--json", *arguments))
+        with open(SCHEMA, encoding="utf-8") as file:
+            jsonschema.validate(report, json.load(file), cls=jsonschema.Draft202012Validator)
+        return report
+
+    def empty_grid(self):
+        data = golden()
+        data[544:4640] = b"\xff" * 4096
+        return self.write("empty_grid.drtv", seal(data))
+
+    def with_unknown_section(self):
+        """A file of version 1.0 with three sections that are unknown there."""
+        data = golden(GOLDEN_1_1)
+        data[6] = 0
+        return self.write("old.drtv", seal(data))
+
+    def test_reports_keep_the_schema(self):
+        report = self.schema_checked(GOLDEN, self.broken(), self.empty_grid(), self.with_unknown_section(), exit_code=INVALID)
+        self.assertEqual([(file["valid"], file["errors"], file["warnings"], file["truncated"]) for file in report["files"]],
+                         [(True, 0, 0, False), (False, 1, 0, False), (False, 4096, 0, True), (True, 0, 3, False)])
+        self.assertEqual((report["checked"], report["invalid"], report["warnings"]), (4, 2, 3))
+        self.assertEqual(report["files"][2]["findings"][7],
+                         {"code": "GRID_NO_PROBE", "severity": "error", "group": "index", "offset": 551, "path": "grid.cells[7]", "value": 255,
+                          "message": "names no probe, the sector has 2"})
+        self.assertIsNone(report["files"][1]["findings"][0]["value"])
+
+    def test_schema_refuses_what_it_should(self):
+        with open(SCHEMA, encoding="utf-8") as file:
+            schema = json.load(file)
+        report = self.schema_checked(self.broken(), exit_code=INVALID)
+        for path, value in ((["files", 0, "findings", 0, "severity"], "fatal"), (["files", 0, "findings", 0, "offset"], -1), (["files", 0, "errors"], "1"), (["more"], 1)):
+            changed = json.loads(json.dumps(report))
+            at = changed
+            for key in path[:-1]:
+                at = at[key]
+            at[path[-1]] = value
+            with self.assertRaises(jsonschema.ValidationError):
+                jsonschema.validate(changed, schema, cls=jsonschema.Draft202012Validator)
+
+    def test_findings_are_capped_and_say_so(self):
+        path = self.empty_grid()
+        stdout = self.expect(INVALID, "validate", path, "--max-findings", "2")
+        self.assertEqual(stdout.count("GRID_NO_PROBE"), 2)
+        self.assertIn("4096 findings, the first 2 are shown", stdout)
+
+    def test_quick_looks_at_the_structure_only(self):
+        self.expect(0, "validate", "--quick", self.empty_grid())
+        self.expect(INVALID, "validate", "--quick", self.broken())
+
+    def test_ignored_code_does_not_count(self):
+        self.expect(0, "validate", self.empty_grid(), "--ignore", "CHECKSUM", "--ignore", "GRID_NO_PROBE", out="1 sector file checked, 0 invalid\n")
+
+    def test_warnings_fail_only_when_asked(self):
+        path = self.with_unknown_section()
+        self.assertIn("warning UNKNOWN_SECTION at byte 4912", self.expect(0, "validate", path, out="0 invalid, 3 warnings\n"))
+        self.expect(INVALID, "validate", "--warnings-as-errors", path, out="1 invalid, 3 warnings\n")
+        self.expect(0, "validate", "--warnings-as-errors", path, "--ignore", "UNKNOWN_SECTION")
+
+    def moved(self, i, j, change=None):
+        data = golden()
+        struct.pack_into("<ii", data, 16, i, j)
+        if change:
+            change(data)
+        return seal(data)
+
+    def test_neighbours_are_looked_at_folder_by_folder(self):
+        def other_key(data):
+            data[272] = 99
+        for i in range(3):
+            self.write(f"a/sector_{i}_0.drtv", self.moved(i, 0, other_key if i == 1 else None))
+        self.write("b/sector_0_0.drtv", self.moved(0, 0, other_key))
+        self.write("b/sector_5_-7.drtv", self.moved(5, 7))
+        self.expect(0, "validate", self.folder)
+        report = self.schema_checked("--neighbours", self.folder, exit_code=INVALID)
+        codes = {os.path.relpath(file["file"], self.folder): [finding["code"] for finding in file["findings"]] for file in report["files"] if file["findings"]}
+        self.assertEqual(codes["a/sector_1_0.drtv"], ["SET_SETTINGS"])
+        self.assertIn("SET_FILE_NAME", codes["b/sector_5_-7.drtv"])
+        self.assertNotIn("a/sector_0_0.drtv", codes)
+        # Named one by one they are still one folder.
+        files = [os.path.join(self.folder, "a", f"sector_{i}_0.drtv") for i in range(3)]
+        self.expect(INVALID, "validate", "--neighbours", *files, out="error SET_SETTINGS")
+        self.expect(0, "validate", "--neighbours", "--ignore", "SET_SETTINGS", *files)
+
+    def test_many_files_are_reported_in_their_order(self):
+        for n in range(60):
+            self.write(f"{n:02}.drtv", b"no" if n % 7 == 3 else golden())
+        report = self.schema_checked(self.folder, exit_code=INVALID)
+        self.assertEqual([os.path.basename(file["file"]) for file in report["files"]], [f"{n:02}.drtv" for n in range(60)])
+        self.assertEqual([file["valid"] for file in report["files"]], [n % 7 != 3 for n in range(60)])
+
+
+class Issues(Tool):
+    def test_page_is_not_stale(self):
+        with open(os.path.join(FORMAT_FOLDER, "ISSUES.md"), encoding="utf-8") as file:
+            self.assertEqual(self.expect(0, "issues"), file.read(), "run: drtv issues > format/ISSUES.md")
+
+
+class Strip(Tool):
+    GOLDEN_1_2 = os.path.join(GOLDEN_FOLDER, "format_1_2.drtv")
+
+    def kept(self, *arguments):
+        out = self.path("out.drtv")
+        self.expect(0, "strip", self.GOLDEN_1_2, "--out", out, *arguments)
+        self.expect(0, "validate", out)
+        dumped = json.loads(self.expect(0, "dump", out, "--json"))
+        probe = dumped["probes"][0]
+        return dumped["format_version"], [name for name in ("convergence", "interiors") if name in dumped] + [name for name in ("static_irradiance", "local") if name in probe]
+
+    def test_keeps_what_is_asked(self):
+        self.assertEqual(self.kept(), ("1.2", ["convergence", "interiors", "static_irradiance", "local"]))
+        self.assertEqual(self.kept("--keep", "none"), ("1.0", []))
+        self.assertEqual(self.kept("--keep", "local_transfer"), ("1.1", ["local"]))
+        self.assertEqual(self.kept("--keep", "static_irradiance,interiors"), ("1.2", ["interiors", "static_irradiance"]))
+
+    def test_one_kind_alone_is_the_golden_file_of_that_kind(self):
+        for name in ("static_irradiance", "local_transfer", "convergence"):
+            out = self.path("out.drtv")
+            self.expect(0, "strip", GOLDEN_1_1, "--out", out, "--keep", name)
+            self.assertEqual(golden(out), golden(os.path.join(GOLDEN_FOLDER, f"format_1_1_{name}.drtv")))
+
+    def test_compressed_and_back_are_the_same_bytes(self):
+        packed, raw = self.path("packed.drtv"), self.path("raw.drtv")
+        self.expect(0, "strip", self.GOLDEN_1_2, "--out", packed, "--codec", "zstd")
+        self.assertLess(os.path.getsize(packed), os.path.getsize(self.GOLDEN_1_2) // 2)
+        self.expect(0, "strip", packed, "--out", raw)
+        self.assertEqual(golden(raw), golden(self.GOLDEN_1_2))
+
+    def test_folder_keeps_its_names(self):
+        self.write("in/a/one.drtv", golden())
+        self.write("in/two.drtv", golden(GOLDEN_1_1))
+        self.expect(0, "strip", self.path("in"), "--out", self.path("out"), "--keep", "none", out="2 sector files, 9960 bytes before, 9488 after")
+        self.assertEqual(golden(self.path("out/a/one.drtv")), golden())
+        self.assertTrue(os.path.exists(self.path("out/two.drtv")))
+
+    def test_broken_file_is_told_and_nothing_written(self):
+        self.expect(INVALID, "strip", self.broken(), "--out", self.path("out.drtv"), err="its checksum does not match")
+        self.assertEqual(os.listdir(self.folder), ["broken.drtv"])
+
+
+class Diff(Tool):
+    DIFFERENT = 4
+
+    def changed(self, change):
+        data = golden(GOLDEN_1_1)
+        change(data)
+        return self.write("changed.drtv", seal(data))
+
+    def test_equal_files_exit_0(self):
+        self.assertEqual(self.expect(0, "diff", GOLDEN, GOLDEN), "1 sector compared, 0 differ; 0 only in the first, 0 only in the second\n")
+        self.expect(0, "diff", GOLDEN, os.path.join(GOLDEN_FOLDER, "format_1_0_zstd.drtv"))
+
+    def test_changed_number_is_named_and_measured(self):
+        def change(data):
+            # Probe 1's T_g[2][0], by 1000 codes of scale 0.5; transfer begins at 464 there.
+            self.assertEqual(struct.unpack_from("<h", data, 464 + 96 + 32 + 16)[0], 1966)
+            struct.pack_into("<h", data, 464 + 96 + 32 + 16, 2966)
+        path = self.changed(change)
+        stdout = self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, path)
+        self.assertIn("sector (-1, 2): 1 of 3 probes changed, 0 added, 0 removed; 0 grid cells\n", stdout)
+        report = json.loads(self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, path, "--json"))
+        transfer = report["sectors"][0]["changes"]["transfer"]
+        self.assertAlmostEqual(transfer["largest"], 1000 / 32767 / 2, places=6)
+        self.assertAlmostEqual(transfer["rms"], 1000 / 32767 / 2 / (3 * 48)**0.5, places=6)
+        self.assertEqual(transfer["at"], "probe[1].transfer.g[2][0]")
+        # A sky of radiance 1 has 3.5449 of Y0.
+        self.assertAlmostEqual(report["changes"]["relit"]["largest"], 3.5449 * 1000 / 32767 / 2, places=4)
+        self.assertEqual((report["compared"], report["different"]), (1, 1))
+
+    def test_moved_probe_is_one_removed_and_one_added(self):
+        def change(data):
+            struct.pack_into("<H", data, 400, 50000)  # x of probe 0
+        stdout = self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, self.changed(change))
+        self.assertIn("1 of 3 probes changed, 1 added, 1 removed; 2048 grid cells; 1 local pairs added, 1 removed", stdout)
+        self.assertIn("probe[1].local from probe 0 of (-1, 2)", stdout)
+
+    def test_sectors_of_one_side_only_are_named(self):
+        self.write("a/one.drtv", golden())
+        other = golden()
+        struct.pack_into("<ii", other, 16, 7, 8)
+        self.write("b/two.drtv", seal(other))
+        stdout = self.expect(self.DIFFERENT, "diff", self.path("a"), self.path("b"))
+        self.assertIn("sector (-1, 2): only in the first\nsector (7, 8): only in the second\n0 sectors compared", stdout)
+
+    def test_settings_and_sections_that_differ_are_told(self):
+        self.expect(self.DIFFERENT, "diff", GOLDEN, self.changed(lambda data: None), out="1 added, 0 removed")
+        def change(data):
+            data[370] ^= 1
+        self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, self.changed(change), out="; settings differ\n")
+
+    def test_picture_is_drawn(self):
+        def change(data):
+            struct.pack_into("<H", data, 400, 50000)
+        out = self.path("diff.png")
+        self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, self.changed(change), "--png", out, "--metres-per-pixel", "0.5")
+        with open(out, "rb") as file:
+            self.assertEqual(struct.unpack(">II", file.read(24)[16:24]), (128, 128))
+
+    def test_same_sector_twice_on_one_side_is_refused(self):
+        self.write("a/one.drtv", golden())
+        self.write("a/two.drtv", golden())
+        self.expect(INVALID, "diff", self.path("a"), GOLDEN, err="hold the same sector (-1, 2)")
+
+
 class Show(Tool):
+    def golden_files(self):
+        return sorted(os.path.join(GOLDEN_FOLDER, name) for name in os.listdir(GOLDEN_FOLDER) if name.endswith(".drtv"))
+
     def test_dump_equals_what_the_page_says_the_bytes_mean(self):
-        for path in (GOLDEN, GOLDEN_1_1):
+        for path in self.golden_files():
             with self.subTest(path=path):
                 dumped = json.loads(self.expect(0, "dump", path, "--json"))
                 self.assertEqual(rounded(dumped), rounded(sector_file.read(bytes(golden(path)))))
@@ -147,8 +370,8 @@ class Show(Tool):
         packed = os.path.join(GOLDEN_FOLDER, "format_1_0_zstd.drtv")
         self.assertEqual(self.expect(0, "dump", "--json", packed), self.expect(0, "dump", GOLDEN, "--json"))
 
-    def test_dump_of_the_golden_file_is_frozen(self):
-        for path in (GOLDEN, GOLDEN_1_1):
+    def test_dump_of_the_golden_files_is_frozen(self):
+        for path in self.golden_files():
             with open(path.replace(".drtv", ".json"), encoding="utf-8") as file:
                 self.assertEqual(self.expect(0, "dump", path, "--json"), file.read())
 

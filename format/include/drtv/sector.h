@@ -18,14 +18,17 @@ enum class ProbeKind : std::uint8_t { ground = 0, vegetation = 1, manual = 2 };
 // "ground", "vegetation" or "manual".
 [[nodiscard]] std::string_view name_of(ProbeKind kind);
 
+// [channel r, g, b][basis direction][SH coefficient], scale 0.5: E/pi from a sky of radiance Y_i, by bounce.
+using TransferCodes = std::array<std::array<std::array<std::int16_t, sh_count>, basis_count>, channel_count>;
+// [basis direction], scale 1: open sky = 1; the last one is always 0 (s21).
+using VisibilityCodes = std::array<std::int16_t, basis_count>;
+
 struct Probe {
     // Offset from the sector's corner in units of 2^-10 m (x, y) and 2^(shift - 10) m (z).
     std::array<std::uint16_t, 3> position{};
     ProbeKind kind = ProbeKind::ground;
-    // [channel r, g, b][basis direction][SH coefficient], scale 0.5: E/pi from a sky of radiance Y_i, by bounce.
-    std::array<std::array<std::array<std::int16_t, sh_count>, basis_count>, channel_count> transfer{};
-    // [basis direction], scale 1: open sky = 1; the last one is always 0 (s21).
-    std::array<std::int16_t, basis_count> sky_visibility{};
+    TransferCodes transfer{};
+    VisibilityCodes sky_visibility{};
 
     bool operator==(const Probe&) const = default;
 };

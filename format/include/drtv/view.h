@@ -40,9 +40,6 @@ struct StoredInterior {
 };
 static_assert(sizeof(StoredPosition) == 8 && sizeof(StoredGrid) == 4112 && sizeof(StoredReceiver) == 8 && sizeof(StoredInterior) == 32);
 
-using TransferCodes = std::array<std::array<std::array<std::int16_t, sh_count>, basis_count>, channel_count>;  // [c][b][i]
-using VisibilityCodes = std::array<std::int16_t, basis_count>;                                                // [b]
-
 // Points into the file's bytes and lives no longer than they do. Probe p of one span is probe p of every other. Spans of
 // optional sections are empty where the file has none.
 struct SectorView {

@@ -25,14 +25,16 @@ DistantLight directional_sun(const Float3& irradiance, const Float3& to_sun) {
     return light;
 }
 
-BasisColours relight(const Probe& probe, const DistantLight& sky, const DistantLight& sun) {
+BasisColours relight(const Probe& probe, const DistantLight& sky, const DistantLight& sun) { return relight(probe.transfer, probe.sky_visibility, sky, sun); }
+
+BasisColours relight(const TransferCodes& transfer_codes, const VisibilityCodes& sky_visibility, const DistantLight& sky, const DistantLight& sun) {
     BasisColours colours{};
     for (std::size_t b = 0; b < basis_count; ++b) {
         const Float4 basis_sh = evaluate_sh(transfer_basis[b]);
-        const float visibility = decode_fixed(probe.sky_visibility[b], sky_visibility_scale);
+        const float visibility = decode_fixed(sky_visibility[b], sky_visibility_scale);
         for (std::size_t c = 0; c < channel_count; ++c) {
             Float4 transfer;
-            for (std::size_t i = 0; i < sh_count; ++i) transfer[i] = decode_fixed(probe.transfer[c][b][i], transfer_scale);
+            for (std::size_t i = 0; i < sh_count; ++i) transfer[i] = decode_fixed(transfer_codes[c][b][i], transfer_scale);
             colours[b][c] = dot4(sky[c], transfer) + dot4(sun[c], transfer) + dot4(basis_sh, sky[c]) * visibility;
         }
     }

@@ -22,6 +22,8 @@ using BasisColours = std::array<Float3, basis_count>;
 
 // Bounce of sky and sun plus the direct sky weighted by visibility (s28-s29).
 [[nodiscard]] BasisColours relight(const Probe& probe, const DistantLight& sky, const DistantLight& sun);
+// The same from a probe's codes where they lie (drtv/view.h).
+[[nodiscard]] BasisColours relight(const TransferCodes& transfer, const VisibilityCodes& sky_visibility, const DistantLight& sky, const DistantLight& sun);
 
 // Adds the light of the map's own lights, which no time of day changes.
 void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light);
