@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fresh Debian 12 -> packages, build, every test. Warnings are errors. Ends with CTest's summary.
+# Fresh Debian 12 -> packages, build, every test, a minute of each fuzz target. Warnings are errors.
 #   tests/run.sh            what CI runs
 #   tests/run.sh --asan     the same under the address and undefined-behaviour sanitizers
 #   tests/run.sh --tsan     the same under the thread sanitizer
@@ -19,3 +19,6 @@ cd "$source_dir"
 cmake --preset "$preset"
 cmake --build --preset "$preset"
 ctest --preset "$preset" --parallel "$(nproc)"
+if [[ $preset == ci ]]; then
+  tests/fuzz/run.sh
+fi

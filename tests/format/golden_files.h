@@ -13,6 +13,7 @@ struct GoldenFile {
     std::string name;
     Sector sector;
     Codec codec = Codec::raw;
+    bool valid = true;
 };
 
 [[nodiscard]] std::vector<GoldenFile> golden_files();
