@@ -49,16 +49,15 @@ std::vector<std::size_t> chosen_sources(const LocalSources& sources, std::size_t
     return chosen;
 }
 
-// Rounds all of a pair's codes to one step. Light that is nowhere negative stays so: what rounding lifts over the bound of band 1 is rounded
-// towards zero.
+// Rounds all of a pair's codes to one step. Light that is nowhere negative stays so: what rounding, also that to codes, lifts over the bound of
+// band 1 is rounded towards zero.
 void round_codes(LightCodes& codes) {
     constexpr std::int64_t band1_over_band0 = 11547, one = 10000;  // (2/3) sqrt(3), rounded down
     int most = 0;
     for (const auto& channel : codes) {
         for (const std::int16_t q : channel) most = std::max(most, std::abs(int{q}));
     }
-    const int shift = static_cast<int>(std::bit_width(static_cast<unsigned>(most))) - significant_bits;
-    if (shift <= 0) return;
+    const int shift = std::max(static_cast<int>(std::bit_width(static_cast<unsigned>(most))) - significant_bits, 0);
     const int step = 1 << shift, largest = INT16_MAX / step * step;
     for (auto& channel : codes) {
         for (std::size_t i = 0; i < sh_count; ++i) {
@@ -130,15 +129,11 @@ LocalTransfer encode_local(const LocalSources& sources, const LocalLight& light,
         for (const std::size_t s : chosen[p]) {
             const float scale = scale_of_exponent(receiver.exponent + transfer.sources[s].exponent);
             LightCodes codes{};
-            bool any = false;
             for (std::size_t c = 0; c < channel_count; ++c) {
-                for (std::size_t i = 0; i < sh_count; ++i) {
-                    codes[c][i] = encode_fixed(light.at(p, s)[c][i], scale);
-                    any = any || codes[c][i] != 0;
-                }
+                for (std::size_t i = 0; i < sh_count; ++i) codes[c][i] = encode_fixed(light.at(p, s)[c][i], scale);
             }
-            if (!any) continue;
             round_codes(codes);
+            if (codes == LightCodes{}) continue;
             receiver.sources[s >> 3] = static_cast<std::uint8_t>(receiver.sources[s >> 3] | 1u << (s & 7));
             transfer.pairs.push_back(codes);
         }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -14,6 +15,11 @@ namespace drtv {
 
 template <class Unsigned>
 [[nodiscard]] inline Unsigned load_le(std::span<const std::uint8_t> bytes, std::size_t offset) {
+    if constexpr (std::endian::native == std::endian::little) {
+        Unsigned value;  // the compiler does not see by itself that the loop below is one load
+        std::memcpy(&value, bytes.data() + offset, sizeof value);
+        return value;
+    }
     std::uint64_t value = 0;
     for (std::size_t k = 0; k < sizeof(Unsigned); ++k) value |= std::uint64_t{bytes[offset + k]} << (8 * k);
     return static_cast<Unsigned>(value);

@@ -97,7 +97,7 @@ class Baking(FarmTest):
         island = self.island()
         files = self.pulled(daemon, island, *REGION, *FEW_RAYS)
         self.assertEqual(len(files), 35)
-        validated = self.farm.run("drtv", "validate", self.farm.path("pulled"), "--json")
+        validated = self.farm.run("drtv", "validate", "--neighbours", "--warnings-as-errors", self.farm.path("pulled"), "--json")
         self.assertEqual(validated.returncode, 0, validated.stdout)
         picture = self.farm.path("map.png")
         self.assertEqual(self.farm.run("drtv", "preview", self.farm.path("pulled"), "--out", picture).returncode, 0)
@@ -117,6 +117,12 @@ class Baking(FarmTest):
         manual = [p["position"] for p in dump["probes"] if p["kind"] == "manual"]
         half_unit_m = 0.5 / 1024
         self.assertTrue(any(all(abs(a - b) <= half_unit_m for a, b in zip(position, (x, -z, y))) for position in manual), (manual, (x, -z, y)))
+        # It is the probe of the hut's interior, a box around it.
+        rooms = [room for room in dump["interiors"] if all(abs(a - b) <= half_unit_m for a, b in zip(dump["probes"][room["probe"]]["position"], (x, -z, y)))]
+        self.assertEqual([(len(room["vertices"]), len(room["triangles"])) for room in rooms], [(8, 12)])
+        for axis, value in enumerate((x, -z, y)):
+            self.assertLess(min(vertex[axis] for vertex in rooms[0]["vertices"]), value)
+            self.assertGreater(max(vertex[axis] for vertex in rooms[0]["vertices"]), value)
 
     def test_resubmitting_finds_every_sector_in_the_cache(self):
         daemon = self.farm.daemon()

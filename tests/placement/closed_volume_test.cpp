@@ -1,5 +1,6 @@
 #include "tests/placement/analytic_scene.h"
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -57,6 +58,31 @@ TEST(ClosedVolume, TwoPartsAreOneVolume) {
     EXPECT_TRUE(volume.contains({0.1, 0.1, 0.1}));
     EXPECT_TRUE(volume.contains({5.1, 0.1, 0.1}));
     EXPECT_FALSE(volume.contains({2, 0.1, 0.1}));
+}
+
+// Six times the volume within the triangles: positive where they are counter-clockwise seen from outside.
+double six_volumes(const ClosedVolume& volume) {
+    const std::vector<glm::dvec3> vertices = volume.vertices();
+    double sum = 0;
+    for (const glm::uvec3& t : volume.triangles()) sum += glm::dot(vertices[t.x], glm::cross(vertices[t.y], vertices[t.z]));
+    return sum;
+}
+
+TEST(ClosedVolume, SurfaceIsMergedAndTurnedOutwards) {
+    for (const bool inwards : {false, true}) {
+        // Each triangle with vertices of its own.
+        std::vector<glm::dvec3> positions;
+        std::vector<glm::uvec3> triangles;
+        for (const glm::uvec3& t : {glm::uvec3(0, 2, 1), glm::uvec3(0, 1, 3), glm::uvec3(1, 2, 3), glm::uvec3(2, 0, 3)}) {
+            const auto first = static_cast<unsigned>(positions.size());
+            for (glm::length_t k = 0; k < 3; ++k) positions.push_back(corners[t[k]]);
+            triangles.emplace_back(first, first + (inwards ? 2 : 1), first + (inwards ? 1 : 2));
+        }
+        const ClosedVolume volume = ClosedVolume::make("v", positions, triangles).value();
+        EXPECT_EQ(volume.vertices().size(), 4u);
+        EXPECT_EQ(volume.triangles().size(), 4u);
+        EXPECT_NEAR(six_volumes(volume), 1, 1e-12);
+    }
 }
 
 TEST(ClosedVolume, ThreadsAgreeWithTheBoxFormula) {
