@@ -1,7 +1,9 @@
 #include <drtv/validate_region.h>
 
+#include "border_step.h"
 #include "findings.h"
-#include "sections.h"
+#include "layout.h"
+#include "section_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,74 +17,12 @@ namespace drtv {
 namespace {
 
 using Coordinate = std::pair<std::int32_t, std::int32_t>;  // (i, j)
-using Light = std::array<float, basis_count * channel_count>;
 
-// The mean step between the probes of two cells beside each other, where they are two: across a border against inside both sectors.
 // On real maps the largest ratio is below 3; what is dim or has few probes inside needs an absolute step too.
 constexpr double most_step_ratio = 4, least_step = 0.05;
 
 // A hole of more places than this counts as open land.
 constexpr std::size_t most_walked = std::size_t{1} << 20;
-
-Light light_of(const Probe& probe) {
-    Light light{};
-    for (std::size_t b = 0; b < basis_count; ++b) {
-        const float sky = decode_fixed(probe.sky_visibility[b], sky_visibility_scale) * open_sky_share(b);
-        for (std::size_t c = 0; c < channel_count; ++c) light[b * channel_count + c] = decode_fixed(probe.transfer[c][b][0], transfer_scale) / sh_y0 + sky;
-    }
-    return light;
-}
-
-double step_between(const Light& a, const Light& b) {
-    double squares = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) squares += static_cast<double>(a[k] - b[k]) * static_cast<double>(a[k] - b[k]);
-    return std::sqrt(squares / static_cast<double>(a.size()));
-}
-
-struct Mean {
-    double sum = 0;
-    std::size_t count = 0;
-
-    void add(double value) {
-        sum += value;
-        ++count;
-    }
-    [[nodiscard]] double value() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
-};
-
-std::size_t cell_index(std::size_t x, std::size_t y, std::size_t z) { return x + grid_size * y + grid_size * grid_size * z; }
-
-const Light* light_at(const RegionSector& sector, std::size_t cell) {
-    const std::uint8_t probe = sector.grid.cells[cell];
-    return probe < sector.light.size() ? &sector.light[probe] : nullptr;
-}
-
-// Steps to the next cell to the east (axis 0) or north (axis 1).
-void add_steps_inside(const RegionSector& sector, std::size_t axis, Mean& steps) {
-    const std::size_t stride = axis == 0 ? 1 : grid_size;
-    for (std::size_t cell = 0; cell < grid_cell_count; ++cell) {
-        if (cell / stride % grid_size == grid_size - 1) continue;
-        if (sector.grid.cells[cell] == sector.grid.cells[cell + stride]) continue;
-        const Light *here = light_at(sector, cell), *next = light_at(sector, cell + stride);
-        if (here != nullptr && next != nullptr) steps.add(step_between(*here, *next));
-    }
-}
-
-// From the last cells of `west` (or south) to the first of `east` (or north) at the same height.
-Mean steps_across(const RegionSector& west, const RegionSector& east, std::size_t axis) {
-    Mean steps;
-    for (std::size_t z = 0; z < grid_size; ++z) {
-        const std::int64_t height = west.grid.z_origin_units + static_cast<std::int64_t>(z) * west.grid.cell_height_units + west.grid.cell_height_units / 2;
-        const std::int64_t east_z = std::clamp<std::int64_t>((height - east.grid.z_origin_units) / std::int64_t{east.grid.cell_height_units}, 0, grid_size - 1);
-        for (std::size_t k = 0; k < grid_size; ++k) {
-            const Light* here = light_at(west, axis == 0 ? cell_index(grid_size - 1, k, z) : cell_index(k, grid_size - 1, z));
-            const auto other_z = static_cast<std::size_t>(east_z);
-            const Light* next = light_at(east, axis == 0 ? cell_index(0, k, other_z) : cell_index(k, 0, other_z));
-            if (here != nullptr && next != nullptr) steps.add(step_between(*here, *next));
-        }
-    }
-    return steps;
-}
 
 std::string text(const Coordinate& sector) { return "(" + std::to_string(sector.first) + ", " + std::to_string(sector.second) + ")"; }
 
@@ -214,13 +154,10 @@ class Region {
     }
 
     void check_step(std::size_t n, std::size_t other, std::size_t axis) {
-        const Mean across = steps_across(sectors_[n], sectors_[other], axis);
-        Mean inside;
-        add_steps_inside(sectors_[n], axis, inside);
-        add_steps_inside(sectors_[other], axis, inside);
-        if (!(across.value() > most_step_ratio * inside.value() && across.value() > least_step)) return;
-        add(n, issue::neighbour_step, 0, across.value(),
-            "towards sector " + text({sectors_[other].i, sectors_[other].j}) + " light steps by " + std::to_string(across.value()) + " on average, inside the two by " + std::to_string(inside.value()));
+        const BorderStep step = border_step(sectors_[n], sectors_[other], axis);
+        if (!(step.across > most_step_ratio * step.inside && step.across > least_step)) return;
+        add(n, issue::neighbour_step, 0, step.across,
+            "towards sector " + text({sectors_[other].i, sectors_[other].j}) + " light steps by " + std::to_string(step.across) + " on average, inside the two by " + std::to_string(step.inside));
     }
 
     std::span<const RegionSector> sectors_;
@@ -232,12 +169,10 @@ class Region {
 }  // namespace
 
 ReadStatus read_region_sector(std::span<const std::uint8_t> bytes, RegionSector& sector) {
-    SectionTable table;
-    Unpacked unpacked;
-    Sections sections;
-    if (ReadStatus status = load_sections(bytes, table, &unpacked, sections); !status.ok()) return status;
     Sector read;
-    copy_sector(bytes, sections, read);
+    SectionTable table;
+    if (ReadStatus status = read_sector(bytes, read); !status.ok()) return status;
+    if (ReadStatus status = load_section_table(bytes, table); !status.ok()) return status;
     RegionSector region;
     region.i = read.i;
     region.j = read.j;
@@ -247,7 +182,7 @@ ReadStatus read_region_sector(std::span<const std::uint8_t> bytes, RegionSector&
     for (const Probe& probe : read.probes) {
         region.positions.push_back(position_units(read, probe));
         region.kinds.push_back(probe.kind);
-        region.light.push_back(light_of(probe));
+        region.light.push_back(light_under_white_sky(probe));
     }
     region.grid = read.grid;
     region.has_local_transfer = read.local_transfer.has_value();

@@ -27,6 +27,9 @@ struct Comparison {
     bool as_json = false;
 };
 
+// Sectors of one side that are named one by one; --json names all.
+constexpr std::size_t most_named = 10;
+
 // Relit change at which a dot is red.
 constexpr double red_change = 0.1, least_shown_change = 1e-4;
 constexpr Float3 same_colour = {0.05f, 0.05f, 0.05f}, added_colour = {0.1f, 0.3f, 1}, removed_colour = {0.9f, 0, 0.9f};
@@ -130,7 +133,8 @@ int add_single(const std::string& file, const Float3& colour, Comparison& compar
 
 void print_summary(const Comparison& comparison) {
     for (const auto& [places, name] : {std::pair(&comparison.only_first, "first"), std::pair(&comparison.only_second, "second")}) {
-        for (const Place& place : *places) std::printf("sector %s: only in the %s\n", text(place).c_str(), name);
+        for (std::size_t n = 0; n < std::min(places->size(), most_named); ++n) std::printf("sector %s: only in the %s\n", text((*places)[n]).c_str(), name);
+        if (places->size() > most_named) std::printf("and %zu more only in the %s\n", places->size() - most_named, name);
     }
     std::printf("%zu sector%s compared, %zu differ; %zu only in the first, %zu only in the second\n", comparison.compared, comparison.compared == 1 ? "" : "s", comparison.different,
                 comparison.only_first.size(), comparison.only_second.size());
