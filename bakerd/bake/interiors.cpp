@@ -88,7 +88,7 @@ tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map, con
         high = glm::max(high, position);
     }
     const glm::dvec3 middle = (low + high) / 2.0;
-    InteriorVolume interior{volume.name, std::nullopt, sector_of(position_of(middle)), std::move(*stored)};
+    InteriorVolume interior{volume.name, std::nullopt, {}, std::move(*stored)};
     if (const map::ManualProbe* probe = probe_of(map, volume, closed, middle)) {
         interior.probe = position_of(probe->position);
         interior.sector = sector_of(*interior.probe);

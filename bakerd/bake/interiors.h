@@ -19,7 +19,7 @@ namespace drtv::bake {
 struct InteriorVolume {
     std::string name;
     std::optional<placement::Position> probe;  // where it stands; nothing where the volume names none and none is inside
-    map::SectorCoordinate sector;              // of its probe; without one, of its middle
+    map::SectorCoordinate sector;              // of its probe
     Interior stored;                           // all but the probe's index
 };
 

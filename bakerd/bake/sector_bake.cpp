@@ -95,14 +95,10 @@ void warn_of_backs(const map::Map& map, const Sector& sector, const std::vector<
 }
 
 // Those whose probe stands in the sector. Fails with a sentence when they are too many for one file.
-tl::expected<void, std::string> store_interiors(const World& world, const PlacedSector& placed, Sector& sector, std::vector<std::string>& warnings) {
-    std::size_t triangles = 0;
+tl::expected<void, std::string> store_interiors(const World& world, const PlacedSector& placed, Sector& sector) {
+    std::size_t vertices = 0, triangles = 0;
     for (const InteriorVolume& interior : world.interiors()) {
-        if (interior.sector != map::SectorCoordinate{sector.i, sector.j}) continue;
-        if (!interior.probe) {
-            warnings.push_back(fmt::format("sector ({}, {}): the interior '{}' names no probe and no probe node is inside it: it is left out", sector.i, sector.j, interior.name));
-            continue;
-        }
+        if (interior.sector != map::SectorCoordinate{sector.i, sector.j} || !interior.probe) continue;
         // Manual probes are never given up, but heights are rounded.
         const auto squared = [&](const placement::Position& position) {
             const glm::dvec3 offset(position - *interior.probe);
@@ -111,10 +107,12 @@ tl::expected<void, std::string> store_interiors(const World& world, const Placed
         const auto probe = std::ranges::min_element(placed.positions, {}, squared) - placed.positions.begin();
         sector.interiors.push_back(interior.stored);
         sector.interiors.back().probe = static_cast<std::uint8_t>(probe);
+        vertices += interior.stored.vertices.size();
         triangles += interior.stored.triangles.size();
     }
-    if (sector.interiors.size() <= max_interiors && triangles <= max_interior_triangles) return {};
-    return tl::unexpected(fmt::format("sector ({}, {}) has {} interiors with {} triangles, over the limits of {} and {}", sector.i, sector.j, sector.interiors.size(), triangles, max_interiors, max_interior_triangles));
+    if (sector.interiors.size() <= max_interiors && vertices <= max_interiors_vertices && triangles <= max_interior_triangles) return {};
+    return tl::unexpected(fmt::format("sector ({}, {}) has {} interiors with {} vertices and {} triangles, over the limits of {}, {} and {}", sector.i, sector.j, sector.interiors.size(), vertices, triangles,
+                                      max_interiors, max_interiors_vertices, max_interior_triangles));
 }
 
 // Local transfer from the sector's probes and its neighbours'.
@@ -176,17 +174,20 @@ tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoor
     sector.bake = {settings.rays, settings.bounces, settings.reach_m, settings.min_distance_m, settings_key(settings).bytes};
     sector.convergence = convergence_of(lights, settings);
     warn_of_backs(world.map(), sector, lights, baked.warnings);
-    if (auto stored = store_interiors(world, **placed, sector, baked.warnings); !stored) return tl::unexpected(stored.error());
+    if (auto stored = store_interiors(world, **placed, sector); !stored) return tl::unexpected(stored.error());
     if (settings.local_transfer) tbb::this_task_arena::isolate([&] { bake_local(world, *scene, **placed, settings, sector); });
     return baked;
 }
 
-tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(const Sector& sector) {
+tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(const Sector& sector, std::vector<std::string>& warnings) {
     std::vector<std::uint8_t> bytes = write_sector(sector);
-    for (const Finding& finding : validate_sector(bytes).findings) {
-        if (finding.issue->severity != Severity::error) continue;
-        return tl::unexpected(fmt::format("sector ({}, {}) does not pass validation: {} {} {}", sector.i, sector.j, finding.issue->code, finding.path, finding.message));
+    const Report report = validate_sector(bytes);
+    const auto sentence = [&](const Finding& finding) { return fmt::format("{} {} {}", finding.issue->code, finding.path, finding.message); };
+    if (!report.valid()) {
+        const auto error = std::ranges::find_if(report.findings, [](const Finding& finding) { return finding.issue->severity == Severity::error; });
+        return tl::unexpected(fmt::format("sector ({}, {}) does not pass validation: {}", sector.i, sector.j, error == report.findings.end() ? "too many findings to show an error" : sentence(*error)));
     }
+    for (const Finding& finding : report.findings) warnings.push_back(fmt::format("sector ({}, {}): {}", sector.i, sector.j, sentence(finding)));
     return bytes;
 }
 

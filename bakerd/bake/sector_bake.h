@@ -23,7 +23,8 @@ struct BakedSector {
 // Runs on the calling thread's TBB arena. Fails with a sentence (too many manual probes; too high a sector).
 [[nodiscard]] tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoordinate coordinate, const Settings& settings);
 
-// The sector file, checked by the validator; a sentence with the first finding when it fails.
-[[nodiscard]] tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(const Sector& sector);
+// The sector file, checked by the validator; a sentence with the first error when it fails. What the validator warns of is added to
+// `warnings`.
+[[nodiscard]] tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(const Sector& sector, std::vector<std::string>& warnings);
 
 }  // namespace drtv::bake

@@ -42,6 +42,12 @@ tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<co
         }
         auto interior = make_interior(world->map(), volume, *closed);
         if (!interior) return tl::unexpected(interior.error());
+        if (!interior->probe) {
+            world->warnings_.push_back(fmt::format("the interior '{}' names no probe and no probe node is inside it: no file holds it", interior->name));
+        } else if (!world->has_ground(interior->sector)) {
+            world->warnings_.push_back(fmt::format("the probe of the interior '{}' stands in sector ({}, {}), which has no ground and is not baked: no file holds the interior", interior->name, interior->sector.i,
+                                                   interior->sector.j));
+        }
         world->interiors_.push_back(std::move(*interior));
     }
     for (const map::ManualProbe& probe : world->map().probes) world->manual_probes_.push_back(probe.position);

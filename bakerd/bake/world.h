@@ -30,6 +30,8 @@ class World {
     [[nodiscard]] const map::Map& map() const { return *geometry_.map(); }
     [[nodiscard]] const StaticLights& lights() const { return lights_; }
     [[nodiscard]] const std::vector<InteriorVolume>& interiors() const { return interiors_; }
+    // Of interiors that no file will hold; one sentence each.
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
     [[nodiscard]] const std::vector<map::SectorCoordinate>& sectors_with_ground() const { return sectors_; }
     [[nodiscard]] bool has_ground(map::SectorCoordinate sector) const;
 
@@ -65,6 +67,7 @@ class World {
     std::vector<map::SectorCoordinate> sectors_;  // with ground, sorted by (j, i)
     std::vector<placement::ClosedVolume> no_probes_;
     std::vector<InteriorVolume> interiors_;
+    std::vector<std::string> warnings_;
     std::vector<glm::dvec3> manual_probes_;
 
     Recent<SceneKey, std::shared_ptr<const trace::Scene>> scenes_;

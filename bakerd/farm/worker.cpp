@@ -67,9 +67,9 @@ class Worker {
     What perform(const BakeRequest& request) {
         const MapResult loaded = map_of(request.manifest);
         if (!loaded) return loaded.error();
-        const auto baked = bake::bake_sector(*loaded->world, request.sector, request.settings);
+        auto baked = bake::bake_sector(*loaded->world, request.sector, request.settings);
         if (!baked) return FailureAnswer{baked.error(), false};
-        const auto bytes = bake::encode_sector(baked->sector);
+        const auto bytes = bake::encode_sector(baked->sector, baked->warnings);
         if (!bytes) return FailureAnswer{bytes.error(), false};
         const auto digest = store_->put(*bytes);
         if (!digest) return FailureAnswer{digest.error().message, true};
@@ -123,6 +123,7 @@ class Worker {
         auto world = bake::World::open(device_, map);
         if (!world) return tl::unexpected(FailureAnswer{world.error(), false});
         LoadedMap loaded{*world, {map->content, (*world)->sectors_with_ground(), static_cast<std::int64_t>(map->objects.size()), 0, map->warnings}};
+        loaded.summary.warnings.insert(loaded.summary.warnings.end(), (*world)->warnings().begin(), (*world)->warnings().end());
         for (const map::Object& object : map->objects) {
             for (const map::Primitive& primitive : map->meshes[object.mesh].primitives) loaded.summary.triangle_count += static_cast<std::int64_t>(primitive.triangles.size());
         }

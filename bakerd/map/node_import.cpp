@@ -129,6 +129,11 @@ class NodeImporter {
         if (auto light = add_light(pending.node, world_from_node); !light) return light;
         if (pending.role == NodeRole::probe) {
             if (is_far(world_from_node[3])) return fail_far(pending.node);
+            // Beyond it no sector can be named, and its place has no number in a sector file.
+            constexpr double max_probe_m = 1'048'576;
+            for (glm::length_t axis = 0; axis < 3; ++axis) {
+                if (std::abs(world_from_node[3][axis]) > max_probe_m) return fail(pending.node, fmt::format("a probe stands {:.0f} m from the origin, over the limit of {:.0f}", std::abs(world_from_node[3][axis]), max_probe_m));
+            }
             map_.probes.push_back({glm::dvec3(world_from_node[3]) + 0.0, node.name});  // no negative zeros
             return {};
         }

@@ -74,7 +74,7 @@ BorderStep border_step(const RegionSector& west, const RegionSector& east, std::
     Mean inside;
     add_steps_inside(west, axis, inside);
     add_steps_inside(east, axis, inside);
-    return {steps_across(west, east, axis).value(), inside.value()};
+    return {steps_across(west, east, axis).value(), inside.value(), inside.count};
 }
 
 }  // namespace drtv

@@ -14,6 +14,7 @@ namespace drtv {
 struct BorderStep {
     double across = 0;  // mean step between the probes of the cells on both sides
     double inside = 0;  // mean step between cells side by side that name different probes; 0 where there are none
+    std::size_t steps_inside = 0;
 };
 
 // From `west` to `east` (axis 0), or from the south to the north (axis 1).

@@ -22,7 +22,9 @@ class Findings {
     // not shown.
     template <class Path, class Message>
     void add(const Issue& issue, std::uint64_t offset, std::optional<double> value, Path path, Message message) {
-        if (std::ranges::find(options_.ignored, &issue) != options_.ignored.end()) return;
+        // What cannot be read cannot be valid, whoever wants to ignore it.
+        const bool unreadable = issue.group == IssueGroup::structure && issue.severity == Severity::error;
+        if (!unreadable && std::ranges::find(options_.ignored, &issue) != options_.ignored.end()) return;
         ++(issue.severity == Severity::error ? report_.errors : report_.warnings);
         if (report_.findings.size() < options_.max_findings) report_.findings.push_back({&issue, offset, path(), value, message()});
         else report_.truncated = true;

@@ -25,7 +25,8 @@ constexpr std::array<std::size_t, channel_count> channel_order = {1, 0, 2};
 
 using Values = std::array<std::int32_t, values_of_pair>;  // [c][i]
 
-std::uint32_t zigzag(std::int32_t value) {
+// Of the low 16 bits.
+std::uint32_t zigzag(std::uint32_t value) {
     const auto v = static_cast<std::int16_t>(value);
     return (static_cast<std::uint32_t>(v) << 1 ^ static_cast<std::uint32_t>(v >> 15)) & 0xFFFF;
 }
@@ -34,14 +35,15 @@ std::int16_t unzigzag(std::uint32_t code) { return static_cast<std::int16_t>(cod
 // Foretells red and blue from green: band 0 by the ratio of the last pairs, band 1 by the pair's own band 0.
 class Predictor {
   public:
-    [[nodiscard]] std::int32_t band0(std::size_t c, std::int32_t green0) const {
+    // Both modulo 2^32, of which the low 16 bits count.
+    [[nodiscard]] std::uint32_t band0(std::size_t c, std::int32_t green0) const {
         const auto g = static_cast<std::uint32_t>(std::max(green0, 0));
-        return static_cast<std::int32_t>((g * sums_[c] + sums_[1] / 2) / sums_[1]);  // below 2^32: sums are below 2^17
+        return (g * sums_[c] + sums_[1] / 2) / sums_[1];  // below 2^32: sums are below 2^17
     }
-    [[nodiscard]] static std::int32_t band1(std::int32_t green, std::int32_t green0, std::int32_t own0) {
+    [[nodiscard]] static std::uint32_t band1(std::int32_t green, std::int32_t green0, std::int32_t own0) {
         const std::int32_t product = green * own0, divisor = std::max(green0, 1);
-        const std::int32_t rounded = (std::abs(product) + divisor / 2) / divisor;
-        return product < 0 ? -rounded : rounded;
+        const auto rounded = static_cast<std::uint32_t>((std::abs(product) + divisor / 2) / divisor);
+        return product < 0 ? 0 - rounded : rounded;
     }
     void learn(const Values& v) {
         for (std::size_t c = 0; c < channel_count; ++c) sums_[c] = std::max(sums_[c] - sums_[c] / 4 + static_cast<std::uint32_t>(std::max(v[c * sh_count], 0)), 1u);
@@ -107,8 +109,8 @@ std::vector<std::uint8_t> filter_local(Bytes raw, std::size_t probe_count) {
         for (const std::size_t c : channel_order) {
             for (std::size_t i = 0; i < sh_count; ++i, ++number) {
                 const Values& v = values[n];
-                const std::int32_t foretold = c == 1 ? 0 : i == 0 ? predictor.band0(c, v[sh_count]) : Predictor::band1(v[sh_count + i], v[sh_count], v[c * sh_count]);
-                const std::uint32_t code = zigzag(v[c * sh_count + i] - foretold);
+                const std::uint32_t foretold = c == 1 ? 0 : i == 0 ? predictor.band0(c, v[sh_count]) : Predictor::band1(v[sh_count + i], v[sh_count], v[c * sh_count]);
+                const std::uint32_t code = zigzag(static_cast<std::uint32_t>(v[c * sh_count + i]) - foretold);
                 const std::size_t place = places.of(n, classes[n], number);
                 high[place] = static_cast<std::uint8_t>(code >> 8);
                 low[place] = static_cast<std::uint8_t>(code);
@@ -138,10 +140,10 @@ bool unfilter_local(Bytes filtered, std::size_t probe_count, std::size_t raw_byt
         std::size_t number = 0;
         for (const std::size_t c : channel_order) {
             for (std::size_t i = 0; i < sh_count; ++i, ++number) {
-                const std::int32_t foretold = c == 1 ? 0 : i == 0 ? predictor.band0(c, v[sh_count]) : Predictor::band1(v[sh_count + i], v[sh_count], v[c * sh_count]);
+                const std::uint32_t foretold = c == 1 ? 0 : i == 0 ? predictor.band0(c, v[sh_count]) : Predictor::band1(v[sh_count + i], v[sh_count], v[c * sh_count]);
                 const std::size_t place = places.of(n, classes[n], number);
                 // In 16 bits, as the encoder's difference was.
-                v[c * sh_count + i] = static_cast<std::int16_t>(foretold + unzigzag(std::uint32_t{high[place]} << 8 | low[place]));
+                v[c * sh_count + i] = static_cast<std::int16_t>(foretold + static_cast<std::uint32_t>(unzigzag(std::uint32_t{high[place]} << 8 | low[place])));
             }
         }
         predictor.learn(v);

@@ -149,7 +149,7 @@ ReadStatus check_interiors_header(const Section& section) {
     }
     if (triangles > max_interior_triangles) return refuse(section, Rooms::triangle_count, "interiors section: " + std::to_string(triangles) + " triangles are over the limit of 2^18");
     // The first half, so that no product overflows where size_t has 32 bits.
-    if (const Rooms parts(count, vertices, triangles); vertices > count * max_interior_vertices || parts.end != raw.size()) {
+    if (const Rooms parts(count, vertices, triangles); vertices > max_interiors_vertices || vertices > count * max_interior_vertices || parts.end != raw.size()) {
         return refuse(section, Rooms::vertex_count, "interiors section has " + std::to_string(raw.size()) + " bytes, must have " + std::to_string(parts.end) + " for " +
                                                         std::to_string(count) + " interiors, " + std::to_string(vertices) + " vertices and " + std::to_string(triangles) + " triangles");
     }

@@ -40,7 +40,7 @@ void check_unknown_sections(const SectionTable& table, const Sections& sections,
         const SectionEntry& entry = table.entries[n];
         if (entry.kind < known_kinds && sections.of_kind[entry.kind].present) continue;
         findings.add(issue::unknown_section, entry.offset, entry.kind, [] { return std::string(); },
-                     [&] { return section_name(entry) + " of version " + std::to_string(entry.version) + " is not known in this file's version and was skipped"; });
+                     [&] { return section_name(entry) + " of version " + std::to_string(entry.version) + " is none that a file of this version has, and was skipped"; });
     }
 }
 

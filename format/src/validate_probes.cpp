@@ -76,7 +76,7 @@ bool is_among_nearest(const std::vector<double>& squared, std::size_t named) {
 
 // For each cell whether it names one of the probes nearest to its centre; false where it names none.
 std::array<bool, grid_cell_count> cells_of_near_probes(const Sector& sector) {
-    // In units from the grid's corner; whole numbers, whose squared distances a double holds exactly.
+    // In units from the grid's corner; whole numbers, whose squared distances a double holds exactly as far as probes can lie apart.
     const std::size_t count = sector.probes.size();
     std::vector<std::array<double, 3>> positions(count);
     for (std::size_t p = 0; p < count; ++p) {
@@ -109,7 +109,7 @@ void check_settings(const Sector& sector, const layout::Place& place, Findings& 
     const BakeRecord& bake = sector.bake;
     const auto check_positive = [&](const char* name, std::uint64_t offset, double value) {
         if (value > 0) return;
-        findings.add(issue::settings_range, place.at(offset), value, [&] { return std::string("settings.") + name; }, [&] { return std::to_string(value) + " is not above 0"; });
+        findings.add(issue::settings_range, place.at(offset), value, [&] { return std::string("settings.") + name; }, [] { return std::string("is not above 0"); });
     };
     check_positive("rays", 0, bake.rays);
     check_positive("reach", 8, static_cast<double>(bake.reach_m));

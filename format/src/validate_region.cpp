@@ -18,17 +18,19 @@ namespace {
 
 using Coordinate = std::pair<std::int32_t, std::int32_t>;  // (i, j)
 
-// On real maps the largest ratio is below 3; what is dim or has few probes inside needs an absolute step too.
+// On real maps the largest ratio is below 3; where it is dim the step must be one that can be seen. Few probes inside prove nothing.
 constexpr double most_step_ratio = 4, least_step = 0.05;
+constexpr std::size_t least_steps_inside = 64;
 
-// A hole of more places than this counts as open land.
-constexpr std::size_t most_walked = std::size_t{1} << 20;
+// Holes are looked for where the rectangle around sectors that touch has no more places than this: 131 x 131 km.
+constexpr std::size_t most_walked = std::size_t{1} << 22;
 
 std::string text(const Coordinate& sector) { return "(" + std::to_string(sector.first) + ", " + std::to_string(sector.second) + ")"; }
 
 class Region {
   public:
-    explicit Region(std::span<const RegionSector> sectors) : sectors_(sectors) {
+    Region(std::span<const RegionSector> sectors, std::span<const std::array<std::int32_t, 2>> also_there) : sectors_(sectors) {
+        for (const auto& [i, j] : also_there) also_there_.insert({i, j});
         for (std::size_t n = 0; n < sectors.size(); ++n) {
             const auto [entry, added] = by_place_.try_emplace({sectors[n].i, sectors[n].j}, n);
             if (!added) add(n, issue::set_duplicate, layout::header::sector_i, std::nullopt, "sector " + text(entry->first) + " is in another file of the set too");
@@ -42,7 +44,7 @@ class Region {
         for (std::size_t n = 0; n < sectors_.size(); ++n) {
             const RegionSector& sector = sectors_[n];
             if (sector.bake.settings_key != most->first) {
-                add(n, issue::set_settings, 0, std::nullopt, "its settings key is that of " + std::to_string(keys[sector.bake.settings_key]) + " sectors, another is that of " + std::to_string(most->second), "settings.key");
+                add(n, issue::set_settings, 0, std::nullopt, "was baked with other settings than " + std::to_string(most->second) + " of the " + std::to_string(sectors_.size()) + " sectors", "settings.key");
             }
             if (sector.named && *sector.named != std::array{sector.i, sector.j}) {
                 add(n, issue::set_file_name, layout::header::sector_i, std::nullopt, "the file is named for sector " + text({(*sector.named)[0], (*sector.named)[1]}) + " and holds sector " + text({sector.i, sector.j}));
@@ -76,37 +78,81 @@ class Region {
         found_.push_back({n, {&issue, offset, std::move(path), value, std::move(message)}});
     }
 
-    // Empty places that no way over empty places leads out of. Reported once, at the sector to their west.
-    void check_holes() {
-        if (by_place_.empty()) return;
-        Coordinate low = by_place_.begin()->first, high = low;
-        for (const auto& [place, n] : by_place_) {
-            low = {std::min(low.first, place.first), std::min(low.second, place.second)};
-            high = {std::max(high.first, place.first), std::max(high.second, place.second)};
-        }
-        // Only what may be a hole is walked, from an empty place with a sector to its west. The largest that n sectors can go round is a
-        // diamond of n^2 / 8.
-        const std::size_t most = std::min(by_place_.size() * by_place_.size() / 8 + 1, most_walked);
-        std::set<Coordinate> known;
-        for (const auto& [place, n] : by_place_) {
-            const Coordinate start{place.first + 1, place.second};
-            if (by_place_.contains(start) || known.contains(start)) continue;
-            std::vector<Coordinate> hole = {start};
-            std::set<Coordinate> seen = {start};
-            bool open = false;
-            for (std::size_t k = 0; k < hole.size() && !open; ++k) {
-                open = hole.size() > most;
-                for (const auto& [di, dj] : {Coordinate{1, 0}, Coordinate{-1, 0}, Coordinate{0, 1}, Coordinate{0, -1}}) {
-                    const Coordinate next{hole[k].first + di, hole[k].second + dj};
-                    open = open || next.first < low.first || next.first > high.first || next.second < low.second || next.second > high.second || outside_.contains(next);
-                    if (!open && !by_place_.contains(next) && seen.insert(next).second) hole.push_back(next);
+    [[nodiscard]] bool is_there(const Coordinate& place) const { return by_place_.contains(place) || also_there_.contains(place); }
+
+    // The places of a component: sectors that touch, corners included. What goes round a hole is one.
+    [[nodiscard]] std::vector<std::vector<Coordinate>> components() const {
+        std::set<Coordinate> left = also_there_;
+        for (const auto& [place, n] : by_place_) left.insert(place);
+        std::vector<std::vector<Coordinate>> found;
+        while (!left.empty()) {
+            std::vector<Coordinate>& component = found.emplace_back(1, *left.begin());
+            left.erase(left.begin());
+            for (std::size_t k = 0; k < component.size(); ++k) {
+                for (std::int32_t dj = -1; dj <= 1; ++dj) {
+                    for (std::int32_t di = -1; di <= 1; ++di) {
+                        const Coordinate next{component[k].first + di, component[k].second + dj};
+                        if (left.erase(next) > 0) component.push_back(next);
+                    }
                 }
             }
-            (open ? outside_ : known).insert(seen.begin(), seen.end());
-            if (!open) {
-                add(n, issue::set_hole, layout::header::sector_i, static_cast<double>(hole.size()),
-                    "sector " + text(start) + " to its east is missing" + (hole.size() == 1 ? "" : " with " + std::to_string(hole.size() - 1) + " more beside it") + ", and sectors are all around");
+        }
+        return found;
+    }
+
+    // Empty places that no way over empty places leads out of. Each hole is reported once.
+    void check_holes() {
+        std::set<Coordinate> known;
+        for (const std::vector<Coordinate>& component : components()) {
+            Coordinate low = component.front(), high = low;
+            for (const Coordinate& place : component) {
+                low = {std::min(low.first, place.first), std::min(low.second, place.second)};
+                high = {std::max(high.first, place.first), std::max(high.second, place.second)};
             }
+            // With a frame of one place around, from which all that is open can be reached.
+            const auto width = static_cast<std::size_t>(high.first - low.first + 3), height = static_cast<std::size_t>(high.second - low.second + 3);
+            if (width * height > most_walked) continue;
+            std::vector<bool> closed(width * height, true);
+            const auto place_of = [&](std::size_t at) { return Coordinate{low.first - 1 + static_cast<std::int32_t>(at % width), low.second - 1 + static_cast<std::int32_t>(at / width)}; };
+            static_cast<void>(walk(0, width, height, closed, low));
+            for (std::size_t at = 0; at < closed.size(); ++at) {
+                const Coordinate place = place_of(at);
+                if (!closed[at] || is_there(place) || known.contains(place)) continue;
+                std::vector<std::size_t> hole = walk(at, width, height, closed, low);
+                for (const std::size_t part : hole) known.insert(place_of(part));
+                report_hole(place, hole.size());
+            }
+        }
+    }
+
+    // All empty places that can be reached from `start`, side by side, within the rectangle; they are open from then on.
+    std::vector<std::size_t> walk(std::size_t start, std::size_t width, std::size_t height, std::vector<bool>& closed, const Coordinate& low) const {
+        std::vector<std::size_t> reached = {start};
+        closed[start] = false;
+        for (std::size_t k = 0; k < reached.size(); ++k) {
+            const std::size_t at = reached[k], x = at % width, y = at / width;
+            const auto go = [&](bool inside, std::size_t next) {
+                if (!inside || !closed[next]) return;
+                if (is_there({low.first - 1 + static_cast<std::int32_t>(next % width), low.second - 1 + static_cast<std::int32_t>(next / width)})) return;
+                closed[next] = false;
+                reached.push_back(next);
+            };
+            go(x > 0, at - 1);
+            go(x + 1 < width, at + 1);
+            go(y > 0, at - width);
+            go(y + 1 < height, at + width);
+        }
+        return reached;
+    }
+
+    // At the sector to the west of its first place, or to the south where that one cannot be read.
+    void report_hole(const Coordinate& first, std::size_t size) {
+        for (const auto& [di, dj, side] : {std::tuple(-1, 0, "east"), std::tuple(0, -1, "north")}) {
+            const auto beside = by_place_.find({first.first + di, first.second + dj});
+            if (beside == by_place_.end()) continue;
+            add(beside->second, issue::set_hole, layout::header::sector_i, static_cast<double>(size),
+                "sector " + text(first) + " to its " + side + " is missing" + (size == 1 ? "" : " with " + std::to_string(size - 1) + " more beside it") + ", and sectors are all around");
+            return;
         }
     }
 
@@ -155,14 +201,14 @@ class Region {
 
     void check_step(std::size_t n, std::size_t other, std::size_t axis) {
         const BorderStep step = border_step(sectors_[n], sectors_[other], axis);
-        if (!(step.across > most_step_ratio * step.inside && step.across > least_step)) return;
+        if (step.steps_inside < least_steps_inside || !(step.across > most_step_ratio * step.inside && step.across > least_step)) return;
         add(n, issue::neighbour_step, 0, step.across,
             "towards sector " + text({sectors_[other].i, sectors_[other].j}) + " light steps by " + std::to_string(step.across) + " on average, inside the two by " + std::to_string(step.inside));
     }
 
     std::span<const RegionSector> sectors_;
     std::map<Coordinate, std::size_t> by_place_;
-    std::set<Coordinate> outside_;
+    std::set<Coordinate> also_there_;
     std::vector<RegionFinding> found_;
 };
 
@@ -195,9 +241,9 @@ ReadStatus read_region_sector(std::span<const std::uint8_t> bytes, RegionSector&
     return {};
 }
 
-std::vector<RegionFinding> validate_region(std::span<const RegionSector> sectors) {
+std::vector<RegionFinding> validate_region(std::span<const RegionSector> sectors, std::span<const std::array<std::int32_t, 2>> also_there) {
     if (sectors.empty()) return {};
-    Region region(sectors);
+    Region region(sectors, also_there);
     region.check_set();
     region.check_borders();
     return region.take();

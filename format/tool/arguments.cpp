@@ -21,6 +21,16 @@ std::string plain(double number) {
 
 }  // namespace
 
+std::vector<std::string> split_list(const std::string& list) {
+    std::vector<std::string> parts;
+    for (std::size_t start = 0; start <= list.size();) {
+        const std::size_t end = std::min(list.find(',', start), list.size());
+        parts.push_back(list.substr(start, end - start));
+        start = end + 1;
+    }
+    return parts;
+}
+
 std::optional<ParsedArguments> ParsedArguments::parse(std::string_view command, Arguments arguments, std::initializer_list<Option> options) {
     ParsedArguments parsed;
     parsed.command_ = command;

@@ -12,6 +12,9 @@
 
 namespace drtv::tool {
 
+// "a,b" as its parts.
+[[nodiscard]] std::vector<std::string> split_list(const std::string& list);
+
 struct Option {
     std::string_view name;  // "--out"
     bool takes_value = false;
@@ -27,7 +30,7 @@ class ParsedArguments {
     [[nodiscard]] std::string value(std::string_view option) const;
     // All values, in their order: of an option that may stand more than once.
     [[nodiscard]] std::vector<std::string> all(std::string_view option) const;
-    // The value as a whole number from `least` to `most`, or as a number above 0 up to `most`; `otherwise` where the option is not given. Nothing, and a
+    // The value as a whole number from `least` to `most`, or as a number above 0 and below `most`; `otherwise` where the option is not given. Nothing, and a
     // complaint, for anything else.
     [[nodiscard]] std::optional<std::size_t> count(std::string_view option, std::size_t least, std::size_t most, std::size_t otherwise) const;
     [[nodiscard]] std::optional<double> positive(std::string_view option, double most, double otherwise) const;

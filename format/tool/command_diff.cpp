@@ -73,7 +73,7 @@ void print_changes(const std::array<Change, quantity_count>& changes) {
 void print_sector(const Place& place, const SectorDiff& diff, std::size_t probes) {
     std::printf("sector %s: %zu of %zu probes changed, %zu added, %zu removed; %zu grid cells", text(place).c_str(), diff.changed, probes, diff.added, diff.removed.size(), diff.cells);
     if (diff.pairs_added + diff.pairs_removed > 0) std::printf("; %zu local pairs added, %zu removed", diff.pairs_added, diff.pairs_removed);
-    for (const auto& [differs, name] : {std::pair(diff.settings, "settings"), std::pair(diff.statistics, "statistics"), std::pair(diff.interiors, "interiors"), std::pair(diff.grid_place, "the grid's place")}) {
+    for (const auto& [differs, name] : {std::pair(diff.settings, "settings"), std::pair(diff.statistics, "statistics"), std::pair(diff.convergence, "the convergence"), std::pair(diff.interiors, "interiors"), std::pair(diff.grid_place, "the grid's place")}) {
         if (differs) std::printf("; %s differ%s", name, name[0] == 't' ? "s" : "");
     }
     std::printf("\n");
@@ -92,7 +92,7 @@ void append_sector(JsonWriter& json, const Place& place, const SectorDiff& diff,
     json.begin_object().key("sector").array(place).key("probes").value(std::uint64_t{probes}).key("changed").value(std::uint64_t{diff.changed});
     json.key("added").value(std::uint64_t{diff.added}).key("removed").value(std::uint64_t{diff.removed.size()}).key("grid_cells").value(std::uint64_t{diff.cells});
     json.key("local_pairs_added").value(std::uint64_t{diff.pairs_added}).key("local_pairs_removed").value(std::uint64_t{diff.pairs_removed});
-    json.key("settings").value(diff.settings).key("statistics").value(diff.statistics).key("interiors").value(diff.interiors);
+    json.key("settings").value(diff.settings).key("statistics").value(diff.statistics).key("convergence").value(diff.convergence).key("interiors").value(diff.interiors).key("grid_place").value(diff.grid_place);
     append_changes(json, diff.changes);
     json.end_object();
 }
@@ -148,6 +148,10 @@ int run_diff(Arguments arguments) {
     if (!parsed) return exit_usage;
     const auto metres_per_pixel = parsed->positive("--metres-per-pixel", 1000, 0);
     if (!metres_per_pixel) return exit_usage;
+    if (parsed->has("--metres-per-pixel") && !parsed->has("--png")) {
+        complain("diff: --metres-per-pixel is for the picture, and there is no --png");
+        return exit_usage;
+    }
     if (parsed->positional.size() != 2) {
         complain("diff needs two files or folders");
         return exit_usage;
@@ -188,6 +192,7 @@ int run_diff(Arguments arguments) {
             complain(error);
             return exit_unreadable;
         }
+        if (!comparison.as_json) std::printf("%s: grey is equal; green changed by %g or less of a white sky, yellow by %g, red by %g or more; blue is new, magenta gone\n", parsed->value("--png").c_str(), least_shown_change, std::sqrt(least_shown_change * red_change), red_change);
     }
     return comparison.different + comparison.only_first.size() + comparison.only_second.size() == 0 ? exit_valid : exit_different;
 }

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string_view>
 
 namespace drtv::tool {
@@ -23,16 +24,6 @@ struct Request {
     WriteOptions write;
 };
 
-std::vector<std::string> split(const std::string& list) {
-    std::vector<std::string> parts;
-    for (std::size_t start = 0; start <= list.size();) {
-        const std::size_t end = std::min(list.find(',', start), list.size());
-        parts.push_back(list.substr(start, end - start));
-        start = end + 1;
-    }
-    return parts;
-}
-
 std::optional<Request> parse(Arguments arguments) {
     const auto parsed = ParsedArguments::parse("strip", arguments, {{"--out", true}, {"--keep", true}, {"--codec", true}});
     if (!parsed) return std::nullopt;
@@ -45,11 +36,11 @@ std::optional<Request> parse(Arguments arguments) {
     if (keep == "all") {
         request.keep.assign(optional_sections.begin(), optional_sections.end());
     } else if (keep != "none") {
-        request.keep = split(keep);
+        request.keep = split_list(keep);
     }
     for (const std::string& name : request.keep) {
         if (std::ranges::find(optional_sections, name) != optional_sections.end()) continue;
-        complain("strip: \"" + name + "\" is no optional section: there are static_irradiance, local_transfer, convergence, interiors, all and none");
+        complain("strip: \"" + name + "\" is no optional section: there are static_irradiance, local_transfer, convergence and interiors; all and none stand alone");
         return std::nullopt;
     }
     const std::string codec = parsed->has("--codec") ? parsed->value("--codec") : "raw";
@@ -69,12 +60,29 @@ void strip(Sector& sector, const std::vector<std::string>& keep) {
     if (!keeps("interiors")) sector.interiors.clear();
 }
 
-// The folder's files keep their names below `out`; a single file becomes `out`, or lies in it where it is a folder.
+// The folder's files keep their names below `out`; a single file becomes `out`, or lies in it where it is a folder or ends with a slash.
 std::string target_of(const std::string& file, const Request& request) {
     std::error_code code;
     if (fs::is_directory(request.in, code)) return (fs::path(request.out) / fs::path(file).lexically_relative(request.in)).string();
-    if (fs::is_directory(request.out, code)) return (fs::path(request.out) / fs::path(file).filename()).string();
+    if (fs::is_directory(request.out, code) || request.out.ends_with('/')) return (fs::path(request.out) / fs::path(file).filename()).string();
     return request.out;
+}
+
+// Whether `out` is `in` or lies below it: what is stripped away would be gone, or be found again by the next run.
+bool is_within(const std::string& in, const std::string& out) {
+    std::error_code code;
+    const fs::path inner = fs::weakly_canonical(out, code), outer = fs::weakly_canonical(in, code);
+    return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+// Sector files below the folder `out` that are not among the files just written.
+std::size_t left_behind(const std::string& out, const std::set<fs::path>& written) {
+    std::string ignored;
+    std::size_t others = 0;
+    if (const auto files = sector_files(out, ignored)) {
+        for (const std::string& file : *files) others += written.contains(fs::path(file).lexically_normal()) ? 0u : 1u;
+    }
+    return others;
 }
 
 }  // namespace
@@ -88,7 +96,25 @@ int run_strip(Arguments arguments) {
         complain(error);
         return exit_unreadable;
     }
+    if (is_within(request->in, request->out)) {
+        complain("strip: " + request->out + " is, or lies in, " + request->in + ": write to another place");
+        return exit_usage;
+    }
+    std::set<fs::path> inputs;
+    std::error_code code;
+    for (const std::string& file : *files) inputs.insert(fs::weakly_canonical(file, code));
+    // All are read before the first is written, so that a broken one leaves no mixture.
+    for (const std::string& file : *files) {
+        const std::string target = target_of(file, *request);
+        if (inputs.contains(fs::weakly_canonical(target, code))) {
+            complain("strip: " + target + " is a file that is stripped: write to another place");
+            return exit_usage;
+        }
+        int exit_code = exit_valid;
+        if (!load_sector(file, exit_code)) return exit_code;
+    }
     std::size_t before = 0, after = 0;
+    std::set<fs::path> written;
     for (const std::string& file : *files) {
         std::vector<std::uint8_t> bytes;
         int exit_code = exit_valid;
@@ -103,10 +129,17 @@ int run_strip(Arguments arguments) {
             complain(error);
             return exit_unreadable;
         }
+        written.insert(fs::path(target).lexically_normal());
         before += bytes.size();
         after += stripped.size();
     }
     std::printf("%zu sector file%s, %zu bytes before, %zu after\n", files->size(), files->size() == 1 ? "" : "s", before, after);
+    std::error_code ignored;
+    if (fs::is_directory(request->in, ignored)) {
+        if (const std::size_t others = left_behind(request->out, written); others > 0) {
+            std::printf("%s holds %zu other sector file%s, left as %s\n", request->out.c_str(), others, others == 1 ? "" : "s", others == 1 ? "it was" : "they were");
+        }
+    }
     return exit_valid;
 }
 

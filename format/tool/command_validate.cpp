@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <thread>
 
 namespace drtv::tool {
@@ -20,6 +21,7 @@ namespace {
 
 struct CheckedFile {
     std::string path;
+    std::optional<std::array<std::int32_t, 2>> named;  // the sector that its name tells
     std::string unreadable;  // a sentence; else the rest holds
     Report report;
     std::optional<RegionSector> region;  // with --neighbours, where the file can be read
@@ -49,13 +51,19 @@ std::optional<Request> parse(Arguments arguments) {
     const auto most = parsed->count("--max-findings", 1, 1'000'000, request.options.max_findings);
     if (!most) return std::nullopt;
     request.options.max_findings = *most;
-    for (const std::string& code : parsed->all("--ignore")) {
-        const Issue* issue = issue_of_code(code);
-        if (issue == nullptr) {
-            complain("validate: there is no issue \"" + code + "\"; drtv issues lists them");
-            return std::nullopt;
+    for (const std::string& list : parsed->all("--ignore")) {
+        for (const std::string& code : split_list(list)) {
+            const Issue* issue = issue_of_code(code);
+            if (issue == nullptr) {
+                complain("validate: there is no issue \"" + code + "\"; drtv issues lists them");
+                return std::nullopt;
+            }
+            if (issue->group == IssueGroup::structure && issue->severity == Severity::error) {
+                complain("validate: " + code + " cannot be ignored: nobody can read such a file");
+                return std::nullopt;
+            }
+            request.ignored.push_back(issue);
         }
-        request.ignored.push_back(issue);
     }
     if (request.paths.empty()) {
         complain("validate needs at least one file or folder");
@@ -86,7 +94,7 @@ void check_file(const Request& request, CheckedFile& file) {
     file.report = validate_sector(*bytes, request.options);
     if (!request.neighbours) return;
     RegionSector region;
-    region.named = sector_in_name(file.path);
+    region.named = file.named;
     if (read_region_sector(*bytes, region).ok()) file.region = std::move(region);
 }
 
@@ -106,12 +114,22 @@ void check_files(const Request& request, std::vector<CheckedFile>& files) {
     work();
 }
 
-// The files of one folder against each other. REQUIRES: all were checked.
+// The files of one folder against each other. What cannot be read is told as such, and counts as there by its name. REQUIRES: all were
+// checked.
 void check_region(const Request& request, std::span<CheckedFile* const> files) {
     std::vector<RegionSector> sectors;
-    for (CheckedFile* file : files) sectors.push_back(std::move(*file->region));
-    for (RegionFinding& found : validate_region(sectors)) {
-        Report& report = files[found.sector]->report;
+    std::vector<CheckedFile*> file_of;
+    std::vector<std::array<std::int32_t, 2>> unreadable;
+    for (CheckedFile* file : files) {
+        if (file->region) {
+            sectors.push_back(std::move(*file->region));
+            file_of.push_back(file);
+        } else if (file->named) {
+            unreadable.push_back(*file->named);
+        }
+    }
+    for (RegionFinding& found : validate_region(sectors, unreadable)) {
+        Report& report = file_of[found.sector]->report;
         const Issue* issue = found.finding.issue;
         if (std::ranges::find(request.ignored, issue) != request.ignored.end()) continue;
         ++(issue->severity == Severity::error ? report.errors : report.warnings);
@@ -120,12 +138,15 @@ void check_region(const Request& request, std::span<CheckedFile* const> files) {
     }
 }
 
-void check_regions(const Request& request, std::vector<CheckedFile>& files) {
+// Gives the number of folders.
+std::size_t check_regions(const Request& request, std::vector<CheckedFile>& files) {
     std::map<std::filesystem::path, std::vector<CheckedFile*>> by_folder;
     for (CheckedFile& file : files) {
-        if (file.region) by_folder[std::filesystem::path(file.path).parent_path()].push_back(&file);
+        std::error_code code;
+        by_folder[std::filesystem::weakly_canonical(file.path, code).parent_path()].push_back(&file);
     }
     for (const auto& [folder, its_files] : by_folder) check_region(request, its_files);
+    return by_folder.size();
 }
 
 const char* name_of(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
@@ -164,17 +185,22 @@ int run_validate(Arguments arguments) {
 
     int exit_code = exit_valid;
     std::vector<CheckedFile> files;
+    std::set<std::filesystem::path> known;
     for (const std::string& path : request->paths) {
         std::string error;
         if (const auto found = sector_files(path, error)) {
-            for (const std::string& file : *found) files.push_back({file, {}, {}, {}});
+            for (const std::string& file : *found) {
+                std::error_code code;
+                if (!known.insert(std::filesystem::weakly_canonical(file, code)).second) continue;  // named twice
+                files.push_back({file, sector_in_name(file), {}, {}, {}});
+            }
         } else {
             complain(error);
             exit_code = exit_unreadable;
         }
     }
     check_files(*request, files);
-    if (request->neighbours) check_regions(*request, files);
+    const std::size_t folders = request->neighbours ? check_regions(*request, files) : 0;
 
     std::size_t checked = 0, invalid = 0, warnings = 0;
     JsonWriter json;
@@ -196,6 +222,7 @@ int run_validate(Arguments arguments) {
     json.end_array().key("checked").value(std::uint64_t{checked}).key("invalid").value(std::uint64_t{invalid}).key("warnings").value(std::uint64_t{warnings}).end_object();
     if (request->json) std::puts(json.text().c_str());
     else std::printf("%zu sector file%s checked, %zu invalid%s\n", checked, checked == 1 ? "" : "s", invalid, warnings == 0 ? "" : (", " + std::to_string(warnings) + (warnings == 1 ? " warning" : " warnings")).c_str());
+    if (!request->json && folders > 1) std::printf("%zu folders, the borders of each by itself\n", folders);
     return exit_code;
 }
 

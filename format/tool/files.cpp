@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 
 namespace drtv::tool {
 
@@ -29,7 +30,12 @@ std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std:
     }
     std::vector<std::uint8_t> bytes;
     std::uint8_t buffer[65536];
-    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) bytes.insert(bytes.end(), buffer, buffer + n);
+    constexpr std::string_view magic = "DRTV";
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) {
+        bytes.insert(bytes.end(), buffer, buffer + n);
+        // What is no sector file is refused by its first bytes, however long it is.
+        if (!std::equal(magic.begin(), magic.begin() + static_cast<std::ptrdiff_t>(std::min(magic.size(), bytes.size())), bytes.begin())) break;
+    }
     const bool failed = std::ferror(file) != 0;
     std::fclose(file);
     if (failed) {
@@ -39,7 +45,14 @@ std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std:
     return bytes;
 }
 
-bool write_file(const std::string& path, const std::vector<std::uint8_t>& bytes, std::string& error) {
+bool write_file(const std::string& link, const std::vector<std::uint8_t>& bytes, std::string& error) {
+    // The file behind a link is replaced, not the link; a device or a pipe is not replaced at all.
+    std::error_code code;
+    const std::string path = fs::is_symlink(link, code) ? fs::weakly_canonical(link, code).string() : link;
+    if (const fs::file_status status = fs::status(path, code); fs::exists(status) && !fs::is_regular_file(status)) {
+        error = "cannot write " + link + ": it is not a regular file";
+        return false;
+    }
     const std::string temporary = path + ".tmp" + std::to_string(::getpid());
     std::FILE* file = std::fopen(temporary.c_str(), "wb");
     bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
@@ -59,7 +72,7 @@ std::optional<std::vector<std::string>> sector_files(const std::string& path, st
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
     if (!fs::exists(status)) {
-        error = path + " does not exist";
+        error = (path.empty() ? "\"\"" : path) + " does not exist";
         return std::nullopt;
     }
     if (!fs::is_directory(status)) return std::vector<std::string>{path};
@@ -67,7 +80,7 @@ std::optional<std::vector<std::string>> sector_files(const std::string& path, st
     fs::recursive_directory_iterator entry(path, code);
     for (; !code && entry != fs::recursive_directory_iterator(); entry.increment(code)) {
         std::error_code ignored;
-        if (entry->path().extension() == ".drtv" && !entry->is_directory(ignored)) files.push_back(entry->path().string());
+        if (entry->path().extension() == ".drtv" && entry->is_regular_file(ignored)) files.push_back(entry->path().string());
     }
     if (code) {
         error = "cannot read the folder " + path + ": " + code.message();

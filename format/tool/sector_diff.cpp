@@ -33,8 +33,9 @@ std::vector<std::size_t> match_probes(const Sector& first, const Sector& second)
     return match;
 }
 
-// A pair of local transfer by what it means: (di, dj, probe of the second sector's numbering) and its decoded coefficients.
-using PairKey = std::tuple<int, int, std::size_t>;
+// A source of local transfer: (di, dj, whether it is a probe of the first sector that the second has not, its index). Own probes have the second
+// sector's numbers where it has them; those of neighbours are taken by their number, as the files say it.
+using PairKey = std::tuple<int, int, bool, std::size_t>;
 using Coefficients = std::array<std::array<double, sh_count>, channel_count>;
 
 std::map<PairKey, Coefficients> pairs_of(const Sector& sector, std::size_t p, const std::vector<std::size_t>* own_index) {
@@ -46,9 +47,11 @@ std::map<PairKey, Coefficients> pairs_of(const Sector& sector, std::size_t p, co
         if (!has_pair(local.receivers[p], s)) continue;
         const LocalSource& source = local.sources[s];
         const bool own = source.di == 0 && source.dj == 0;
-        const std::size_t probe = own && own_index != nullptr ? (*own_index)[source.probe] : source.probe;
+        const std::size_t renumbered = own && own_index != nullptr ? (*own_index)[source.probe] : source.probe;
+        const bool gone = renumbered == no_match;
+        const std::size_t probe = gone ? source.probe : renumbered;
         const float scale = scale_of_exponent(local.receivers[p].exponent + source.exponent);
-        Coefficients& coefficients = pairs[{source.di, source.dj, probe}];
+        Coefficients& coefficients = pairs[{source.di, source.dj, gone, probe}];
         for (std::size_t c = 0; c < channel_count; ++c) {
             for (std::size_t i = 0; i < sh_count; ++i) coefficients[c][i] = static_cast<double>(decode_fixed(local.pairs[pair][c][i], scale));
         }
@@ -74,10 +77,13 @@ class Differ {
         }
         for (std::size_t p = 0; p < second_.probes.size(); ++p) {
             if (diff_.match[p] != no_match) diff_probe(p, diff_.match[p]);
+            else diff_.pairs_added += pairs_of(second_, p, nullptr).size();
         }
+        for (const std::size_t p : diff_.removed) diff_.pairs_removed += pairs_of(first_, p, nullptr).size();
         diff_grid();
         diff_.settings = first_.bake != second_.bake;
-        diff_.statistics = first_.statistics != second_.statistics || first_.convergence != second_.convergence;
+        diff_.statistics = first_.statistics != second_.statistics;
+        diff_.convergence = first_.convergence != second_.convergence;
         diff_.interiors = first_.interiors != second_.interiors;
         return std::move(diff_);
     }
@@ -128,7 +134,7 @@ class Differ {
             for (std::size_t c = 0; c < channel_count; ++c) {
                 for (std::size_t i = 0; i < sh_count; ++i) {
                     add(local_transfer, b[c][i] - a[c][i], [&] {
-                        return probe_path(p) + ".local from probe " + std::to_string(std::get<2>(key)) + " of (" + std::to_string(second_.i + std::get<0>(key)) + ", " + std::to_string(second_.j + std::get<1>(key)) + ")";
+                        return probe_path(p) + ".local from " + (std::get<2>(key) ? "the first's probe " : "probe ") + std::to_string(std::get<3>(key)) + " of (" + std::to_string(second_.i + std::get<0>(key)) + ", " + std::to_string(second_.j + std::get<1>(key)) + ")";
                     });
                 }
             }
@@ -181,7 +187,7 @@ void Change::merge(const Change& other, const std::string& prefix) {
 double Change::rms() const { return count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count)); }
 
 bool SectorDiff::equal() const {
-    return removed.empty() && added == 0 && changed == 0 && cells == 0 && !settings && !statistics && !interiors && !grid_place && pairs_added == 0 && pairs_removed == 0;
+    return removed.empty() && added == 0 && changed == 0 && cells == 0 && !settings && !statistics && !convergence && !interiors && !grid_place && pairs_added == 0 && pairs_removed == 0;
 }
 
 SectorDiff diff_sectors(const Sector& first, const Sector& second) { return Differ(first, second).run(); }

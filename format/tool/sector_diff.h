@@ -34,8 +34,8 @@ struct SectorDiff {
     std::vector<std::size_t> removed;      // probes of the first sector that have no match
     std::size_t added = 0, changed = 0;    // probes: without a match; with other numbers than their match
     std::size_t cells = 0;                 // of the grid, that name another probe
-    bool settings = false, statistics = false, interiors = false, grid_place = false;
-    std::size_t pairs_added = 0, pairs_removed = 0;  // of local transfer
+    bool settings = false, statistics = false, convergence = false, interiors = false, grid_place = false;
+    std::size_t pairs_added = 0, pairs_removed = 0;  // of local transfer; those of added and removed probes too
     std::array<Change, quantity_count> changes;
 
     [[nodiscard]] bool equal() const;

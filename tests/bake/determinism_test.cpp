@@ -59,7 +59,7 @@ Files bake_all(bake::World& world, const bake::Settings& settings, bool backward
     }
     if (backwards) std::reverse(sectors.begin(), sectors.end());
     std::vector<std::vector<std::uint8_t>> bytes(sectors.size());
-    tbb::parallel_for(std::size_t{0}, sectors.size(), [&](std::size_t n) { bytes[n] = bake::encode_sector(bake::bake_sector(world, sectors[n], settings).value().sector).value(); });
+    tbb::parallel_for(std::size_t{0}, sectors.size(), [&](std::size_t n) { bytes[n] = encoded(bake::bake_sector(world, sectors[n], settings).value().sector); });
     Files files;
     for (std::size_t n = 0; n < sectors.size(); ++n) files[sectors[n]] = bytes[n];
     return files;

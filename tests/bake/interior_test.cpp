@@ -74,10 +74,25 @@ TEST(Interior, WithoutAProbeIsLeftOutWithAWarning) {
     House house;
     house.add_room();
     house.add_probe({100, 6, 1});
-    const bake::BakedSector baked = house.bake({0, 0});
-    EXPECT_TRUE(baked.sector.interiors.empty());
+    EXPECT_TRUE(house.bake({0, 0}).sector.interiors.empty());
+    EXPECT_EQ(open_world(house.b)->warnings(), std::vector<std::string>{"the interior 'room' names no probe and no probe node is inside it: no file holds it"});
+}
+
+TEST(Interior, ProbeOverNoGroundIsWarnedOf) {
+    House house;
+    house.add_room("far");
+    house.add_probe({1000, 6, 1}, "far");
+    EXPECT_EQ(open_world(house.b)->warnings(), std::vector<std::string>{"the probe of the interior 'room' stands in sector (15, 0), which has no ground and is not baked: no file holds the interior"});
+}
+
+TEST(Interior, WarningsOfTheValidatorReachTheArtist) {
+    House house;
+    house.add_room("outside");
+    house.add_probe({30, 30, 1}, "outside");
+    bake::BakedSector baked = house.bake({0, 0});
+    ASSERT_TRUE(bake::encode_sector(baked.sector, baked.warnings));
     ASSERT_EQ(baked.warnings.size(), 1u);
-    EXPECT_EQ(baked.warnings[0], "sector (0, 0): the interior 'room' names no probe and no probe node is inside it: it is left out");
+    EXPECT_EQ(baked.warnings[0], "sector (0, 0): INTERIOR_PROBE interior[0] its probe 0 stands outside of its bounds");
 }
 
 // A tessellated ball: vertices round, some triangles vanish, and it stays closed whichever way its triangles faced.
@@ -110,7 +125,7 @@ TEST(Interior, RoundedMeshIsClosedAndOutwards) {
         // 4 cm in steps of 1 mm: what is thinner than a step is gone.
         EXPECT_LT(sector.interiors[0].triangles.size(), ball.indices.size() / 3 - 2 * segments);
         EXPECT_GT(sector.interiors[0].triangles.size(), 500u);
-        for (const Finding& finding : validate_sector(*bake::encode_sector(sector)).findings) ADD_FAILURE() << finding.issue->code << " " << finding.message;
+        for (const Finding& finding : validate_sector(encoded(sector)).findings) ADD_FAILURE() << finding.issue->code << " " << finding.message;
     }
 }
 
@@ -151,7 +166,7 @@ TEST(Interior, OrderOfNodesChangesNoByte) {
         house.add_probe({22, 25, 1}, "b");
         const Sector sector = house.bake({0, 0}).sector;
         ASSERT_EQ(sector.interiors.size(), 2u);
-        files.push_back(*bake::encode_sector(sector));
+        files.push_back(encoded(sector));
     }
     EXPECT_EQ(files[0], files[1]);
 }

@@ -130,7 +130,7 @@ TEST(LocalTransfer, SectorHoldsItsOwnProbesThenNeighbours) {
     settings.rays = 64;
     settings.local_transfer = true;
     settings.local_rays = 16;
-    const auto baked = bake::bake_sector(*world, {0, 0}, settings);
+    auto baked = bake::bake_sector(*world, {0, 0}, settings);
     ASSERT_TRUE(baked) << baked.error();
     ASSERT_TRUE(baked->sector.local_transfer);
     const LocalTransfer& local = *baked->sector.local_transfer;
@@ -143,7 +143,7 @@ TEST(LocalTransfer, SectorHoldsItsOwnProbesThenNeighbours) {
     }
     // The first neighbours stand 8 m from the border's probes.
     EXPECT_EQ(std::abs(local.sources[64].di) + std::abs(local.sources[64].dj), 1);
-    const auto bytes = bake::encode_sector(baked->sector);
+    const auto bytes = bake::encode_sector(baked->sector, baked->warnings);
     ASSERT_TRUE(bytes) << bytes.error();
     Sector read;
     ASSERT_TRUE(read_sector(*bytes, read).ok());

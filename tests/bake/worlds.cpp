@@ -1,5 +1,7 @@
 #include "tests/bake/worlds.h"
 
+#include "bakerd/bake/sector_bake.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,6 +22,13 @@ bake::ProbeLight light_at(bake::World& world, const glm::vec3& position_m, std::
     const auto scene = world.scene_for({static_cast<std::int32_t>(std::floor(position_m.x / 64)), static_cast<std::int32_t>(std::floor(position_m.y / 64))}, 512);
     const bake::SampleTable samples(rays, bake::sample_dimensions(bounces, !world.lights().empty()));
     return bake::integrate_probe(*scene, world.lights(), glm::ivec3(glm::round(position_m * 1024.0f)), samples, {bounces, 512, error});
+}
+
+std::vector<std::uint8_t> encoded(const Sector& sector) {
+    std::vector<std::string> warnings;
+    auto bytes = bake::encode_sector(sector, warnings);
+    EXPECT_TRUE(bytes) << (bytes ? "" : bytes.error());
+    return bytes.value_or(std::vector<std::uint8_t>());
 }
 
 double under_constant_sky(const bake::ProbeLight& light, std::size_t channel, std::size_t basis) {

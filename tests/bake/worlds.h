@@ -5,7 +5,10 @@
 #include "bakerd/bake/world.h"
 #include "tests/map/gltf_builder.h"
 
+#include <drtv/sector.h>
+
 #include <memory>
+#include <vector>
 
 namespace drtv::test {
 
@@ -14,6 +17,9 @@ namespace drtv::test {
 
 // Light at a world position in metres; rays and bounces as given, reach 512 m.
 [[nodiscard]] bake::ProbeLight light_at(bake::World& world, const glm::vec3& position_m, std::uint32_t rays, std::uint32_t bounces = 3, float error = 0);
+
+// The sector's file. REQUIRES: it passes the validator.
+[[nodiscard]] std::vector<std::uint8_t> encoded(const Sector& sector);
 
 // Sum over i of T[c][b][i] and a constant sky of radiance 1.
 [[nodiscard]] double under_constant_sky(const bake::ProbeLight& light, std::size_t channel, std::size_t basis);

@@ -100,7 +100,8 @@ void whole_sector(benchmark::State& state) {
     std::size_t probes = 0;
     for (auto _ : state) {
         const Sector sector = bake::bake_sector(*setup->world, middle, setup->settings).value().sector;
-        benchmark::DoNotOptimize(bake::encode_sector(sector).value());
+        std::vector<std::string> warnings;
+        benchmark::DoNotOptimize(bake::encode_sector(sector, warnings).value());
         probes += sector.probes.size();
     }
     state.counters["probes/s"] = benchmark::Counter(static_cast<double>(probes), benchmark::Counter::kIsRate);

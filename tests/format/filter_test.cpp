@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <tuple>
 
 namespace drtv::test {
 namespace {
@@ -77,6 +78,20 @@ TEST(LocalFilter, PutsBytesWhereThePageSays) {
     ASSERT_EQ(expected.size(), 24u);
     const std::uint8_t *high = at + 4, *low = high + 24;
     for (std::size_t n = 0; n < 24; ++n) EXPECT_EQ(high[n] << 8 | low[n], zigzag(expected[n])) << n;
+}
+
+// Sums at their largest: what is foretold of red leaves 31 bits.
+TEST(LocalFilter, LargestForetoldNumbersWrapAsThePageSays) {
+    Sector sector = golden_sector();
+    LocalTransfer& local = sector.local_transfer.emplace();
+    local.sources = neighbouring_sources(5);
+    local.receivers.resize(2);
+    // s_r: 1, 32768, 57343, then 65538; s_g stays 1. Then 32767 * 65538 is foretold, and -32768 is there.
+    for (const auto& [s, red, green] : {std::tuple<std::size_t, std::int16_t, std::int16_t>{0, 32767, -1}, {1, 32767, 0}, {2, 22530, -5}, {3, INT16_MIN, 32767}, {4, 32767, 1}}) {
+        add_pairs(local, 0, {s}, {{{red, 1, 0, 0}, {green, 0, 0, 3}, {0, 0, 0, 0}}});
+    }
+    const Bytes raw = local_section(sector);
+    EXPECT_EQ(back(filter_local(raw, 2), 2, raw.size()), raw);
 }
 
 TEST(LocalFilter, AnyBytesOfTheRightSizeGiveASectionOrNothing) {

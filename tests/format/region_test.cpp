@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 
 namespace drtv::test {
@@ -73,7 +74,7 @@ struct Case {
 const std::vector<Case> cases = {
     {"SectorTwice", [](auto& s) { s.push_back(plain(1, 1)); }, "9: SET_DUPLICATE at 16, : sector (1, 1) is in another file of the set too"},
     {"OtherSettings", [](auto& s) { s[4].bake.settings_key[0] = 9; },
-     "4: SET_SETTINGS at 0, settings.key: its settings key is that of 1 sectors, another is that of 8"},
+     "4: SET_SETTINGS at 0, settings.key: was baked with other settings than 8 of the 9 sectors"},
     {"Hole", [](auto& s) { s.erase(s.begin() + 4); }, "3: SET_HOLE at 16, : sector (1, 1) to its east is missing, and sectors are all around"},
     {"SourceThatIsNotThere", [](auto& s) { for (Sector& sector : s) sector.local_transfer = light_from(0, 1); s[0].local_transfer = light_from(1, 16); },
      "0: NEIGHBOUR_SOURCE at 6308, local_transfer.sources[1]: is probe 16 of sector (1, 0), which has 16"},
@@ -133,6 +134,16 @@ TEST(Region, BaysAreNoHoles) {
     EXPECT_EQ(report_of(sectors), "");
 }
 
+TEST(Region, UnreadableSectorIsNoHole) {
+    std::vector<Sector> sectors = square(3);
+    sectors.erase(sectors.begin() + 4);
+    std::vector<RegionSector> region(sectors.size());
+    for (std::size_t n = 0; n < sectors.size(); ++n) ASSERT_TRUE(read_region_sector(write_sector(sectors[n]), region[n]).ok());
+    EXPECT_EQ(validate_region(region).size(), 1u);
+    const std::array<std::array<std::int32_t, 2>, 1> unreadable = {{{1, 1}}};
+    EXPECT_TRUE(validate_region(region, unreadable).empty());
+}
+
 TEST(Region, HoleOfTwoIsOneFinding) {
     std::vector<Sector> sectors = square(4);
     std::erase_if(sectors, [](const Sector& s) { return s.j == 1 && (s.i == 1 || s.i == 2); });
@@ -142,6 +153,39 @@ TEST(Region, HoleOfTwoIsOneFinding) {
 // Sectors may lie anywhere, as far apart as coordinates go; what lies between them is not walked.
 TEST(Region, FarApartSectorsAreNoHoles) {
     EXPECT_EQ(report_of({plain(-16384, -16384), plain(16384, 16384), plain(-16384, 16384), plain(16384, -16384), plain(0, 0)}), "");
+}
+
+TEST(Region, HolesInScatteredIslandsAreFoundAtOnce) {
+    // 100 rings of 8 sectors, far apart and without an order, each around a hole; one of them in the lake of a larger ring.
+    std::vector<RegionSector> region;
+    const RegionSector one = [] {
+        RegionSector sector;
+        EXPECT_TRUE(read_region_sector(write_sector(random_sector(1, 0)), sector).ok());
+        return sector;
+    }();
+    const auto put = [&](std::int32_t i, std::int32_t j) {
+        region.push_back(one);
+        region.back().i = i;
+        region.back().j = j;
+    };
+    const auto put_ring = [&](std::int32_t i, std::int32_t j, std::int32_t radius) {
+        for (std::int32_t y = -radius; y <= radius; ++y) {
+            for (std::int32_t x = -radius; x <= radius; ++x) {
+                if (std::max(std::abs(x), std::abs(y)) == radius) put(i + x, j + y);
+            }
+        }
+    };
+    for (std::int32_t n = 0; n < 100; ++n) put_ring(n * 7919 % 16000, n * 104729 % 16000, 1);
+    put_ring(-5000, -5000, 1);
+    put_ring(-5000, -5000, 4);
+    std::size_t holes = 0, missing = 0;
+    for (const RegionFinding& found : validate_region(region)) {
+        EXPECT_EQ(found.finding.issue, &issue::set_hole);
+        ++holes;
+        missing += static_cast<std::size_t>(found.finding.value.value_or(0));
+    }
+    EXPECT_EQ(holes, 102u);
+    EXPECT_EQ(missing, 100 + 1 + (7 * 7 - 3 * 3u));
 }
 
 // Manual probes stand where the artist wants them.

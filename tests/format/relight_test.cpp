@@ -150,6 +150,17 @@ TEST(Relight, SunIsItsIrradianceTimesSh) {
     EXPECT_NEAR(sun[2][3], 3 * 0.488603 * 0.6, float_tolerance);
 }
 
+// One channel, band 0 and the z of band 1, at scale 4.
+TEST(ShadeLocal, IsIntensityTimesTheSumOverTheHarmonics) {
+    const LightCodes pair = {{{16384, 0, 8192, 0}, {0, 0, 0, 0}, {0, 32767, 0, 0}}};
+    const Float3 up = shade_local(pair, 4, {2, 3, 5}, {0, 0, 1}), north = shade_local(pair, 4, {2, 3, 5}, {0, 1, 0});
+    EXPECT_NEAR(up[0], 2 * (2.0 * 0.282095 + 1.0 * 0.488603), 2e-4);
+    EXPECT_EQ(up[1], 0);
+    EXPECT_EQ(up[2], 0);
+    EXPECT_NEAR(north[0], 2 * 2.0 * 0.282095, 2e-4);
+    EXPECT_NEAR(north[2], 5 * 4 * 0.488603, 2e-4);
+}
+
 TEST(ShadeAmbient, AgreesWithTheTalksCodeInDouble) {
     RandomLight random;
     for (int n = 0; n < 1000; ++n) {

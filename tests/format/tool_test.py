@@ -1,6 +1,7 @@
 """The drtv tool from outside: what it prints and how it exits. Usage: tool_test.py DRTV GOLDEN_FOLDER"""
 import json
 import os
+import stat
 import struct
 import subprocess
 import sys
@@ -26,7 +27,8 @@ class Usage(Tool):
                 (["preview", GOLDEN, "--out"], "--out needs a value"), (["preview", GOLDEN, "--wide"], 'unknown option "--wide"'),
                 (["preview", GOLDEN, GOLDEN, "--out", "a.png"], "one too many"), (["validate", GOLDEN, "--ignore"], "--ignore needs a value"),
                 (["validate", GOLDEN, "--ignore", "STRUCTURE"], 'there is no issue "STRUCTURE"; drtv issues lists them'),
-                (["validate", GOLDEN, "--quick", "--neighbours"], "does not go with --neighbours"), (["validate", GOLDEN, "--quick", "--full"], "with --full"),
+                (["validate", GOLDEN, "--quick", "--neighbours"], "does not go with --neighbours"), (["validate", GOLDEN, "--ignore", "GRID_NO_PROBE,CHECKSUM"], "CHECKSUM cannot be ignored"),
+                (["diff", GOLDEN, GOLDEN, "--metres-per-pixel", "1"], "there is no --png"), (["validate", GOLDEN, "--quick", "--full"], "with --full"),
                 (["validate", GOLDEN, "--max-findings", "0"], "--max-findings takes a number from 1 to 1000000, not \"0\""), (["issues", "x"], "no arguments"),
                 (["diff", GOLDEN], "two files or folders"), (["diff", GOLDEN, GOLDEN, "--png"], "--png needs a value"), (["strip", GOLDEN], "usage is: drtv strip"),
                 (["strip", GOLDEN, "--out", "x", "--keep", "transfer"], '"transfer" is no optional section'),
@@ -188,7 +190,7 @@ class ValidateOptions(Tool):
         self.expect(INVALID, "validate", "--quick", self.broken())
 
     def test_ignored_code_does_not_count(self):
-        self.expect(0, "validate", self.empty_grid(), "--ignore", "CHECKSUM", "--ignore", "GRID_NO_PROBE", out="1 sector file checked, 0 invalid\n")
+        self.expect(0, "validate", self.empty_grid(), "--ignore", "GRID_REFERENCE,GRID_NO_PROBE", "--ignore", "ENERGY", out="1 sector file checked, 0 invalid\n")
 
     def test_warnings_fail_only_when_asked(self):
         path = self.with_unknown_section()
@@ -216,6 +218,7 @@ class ValidateOptions(Tool):
         self.assertEqual(codes["a/sector_1_0.drtv"], ["SET_SETTINGS"])
         self.assertIn("SET_FILE_NAME", codes["b/sector_5_-7.drtv"])
         self.assertNotIn("a/sector_0_0.drtv", codes)
+        self.assertIn("2 folders, the borders of each by itself\n", self.expect(INVALID, "validate", "--neighbours", self.folder))
         # Named one by one they are still one folder.
         files = [os.path.join(self.folder, "a", f"sector_{i}_0.drtv") for i in range(3)]
         self.expect(INVALID, "validate", "--neighbours", *files, out="error SET_SETTINGS")
@@ -275,6 +278,35 @@ class Strip(Tool):
     def test_broken_file_is_told_and_nothing_written(self):
         self.expect(INVALID, "strip", self.broken(), "--out", self.path("out.drtv"), err="its checksum does not match")
         self.assertEqual(os.listdir(self.folder), ["broken.drtv"])
+        self.write("in/a.drtv", golden())
+        self.broken("in/z.drtv")
+        self.expect(INVALID, "strip", self.path("in"), "--out", self.path("out"), err="z.drtv: transfer section")
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    def test_input_is_never_written_over(self):
+        self.write("in/a.drtv", golden())
+        for out in (self.path("in"), self.path("in/console"), self.path("in/../in/")):
+            self.expect(USAGE, "strip", self.path("in"), "--out", out, err="write to another place")
+        self.expect(USAGE, "strip", self.path("in/a.drtv"), "--out", self.path("in/a.drtv"), err="write to another place")
+        self.expect(USAGE, "strip", self.path("in/a.drtv"), "--out", self.path("in"), err="a.drtv is a file that is stripped")
+        self.assertEqual(os.listdir(self.path("in")), ["a.drtv"])
+        self.assertEqual(golden(self.path("in/a.drtv")), golden())
+
+    def test_other_files_in_the_target_are_told(self):
+        self.write("in/a.drtv", golden())
+        self.write("out/old.drtv", golden())
+        self.expect(0, "strip", self.path("in"), "--out", self.path("out"), out="holds 1 other sector file, left as it was\n")
+
+    def test_devices_are_not_replaced_and_links_are_followed(self):
+        pipe, link, target = self.path("pipe"), self.path("link.drtv"), self.path("target.drtv")
+        os.mkfifo(pipe)
+        self.expect(UNREADABLE, "strip", GOLDEN, "--out", pipe, err="it is not a regular file")
+        self.assertTrue(stat.S_ISFIFO(os.stat(pipe).st_mode))
+        self.write("target.drtv", b"old")
+        os.symlink(target, link)
+        self.expect(0, "strip", GOLDEN, "--out", link)
+        self.assertTrue(os.path.islink(link))
+        self.assertEqual(golden(target), golden())
 
 
 class Diff(Tool):
@@ -310,8 +342,8 @@ class Diff(Tool):
         def change(data):
             struct.pack_into("<H", data, 400, 50000)  # x of probe 0
         stdout = self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, self.changed(change))
-        self.assertIn("1 of 3 probes changed, 1 added, 1 removed; 2048 grid cells; 1 local pairs added, 1 removed", stdout)
-        self.assertIn("probe[1].local from probe 0 of (-1, 2)", stdout)
+        self.assertIn("1 of 3 probes changed, 1 added, 1 removed; 2048 grid cells; 2 local pairs added, 2 removed", stdout)
+        self.assertRegex(stdout, r"probe\[1\].local from (the first's )?probe 0 of \(-1, 2\)")
 
     def test_sectors_of_one_side_only_are_named(self):
         self.write("a/one.drtv", golden())

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace drtv::test {
 namespace {
 
@@ -108,6 +110,53 @@ TEST(SectorView, RefusesWhatItCannotUseInPlace) {
     const Bytes cut = Edit(golden_bytes_1_2()).cut(3000).as_is();
     EXPECT_EQ(open_sector(cut, view).error, ReadError::truncated);
     EXPECT_EQ(view.i, 77) << "left as it was";
+}
+
+TEST(SectorViewLookup, FindsProbesPositionsAndPairsAsAReaderDoes) {
+    const Sector sector = random_sector_1_2(4, 40);
+    const Bytes file = write_sector(sector);
+    const SectorView view = open(file);
+    const LocalTransfer& local = *sector.local_transfer;
+    for (std::size_t p = 0; p < 40; ++p) {
+        EXPECT_EQ(position_m(view, p), position_m(sector, sector.probes[p]));
+        EXPECT_EQ(static_irradiance_of(view, p), sector.static_irradiance[p]);
+        std::size_t pair = local.receivers[p].first_pair;
+        for (std::size_t s = 0; s < local.sources.size(); ++s) {
+            const LocalPair found = find_local_pair(view, p, s);
+            ASSERT_EQ(found.codes != nullptr, has_pair(local.receivers[p], s));
+            if (found.codes == nullptr) continue;
+            EXPECT_EQ(*found.codes, local.pairs[pair++]);
+            EXPECT_EQ(found.scale, scale_of_exponent(local.receivers[p].exponent + local.sources[s].exponent));
+        }
+    }
+}
+
+TEST(SectorViewLookup, GridIsReadAsThePageSays) {
+    Sector sector = golden_sector();  // (-1, 2), grid from 8 m, cells of 1 m
+    for (std::size_t cell = 0; cell < grid_cell_count; ++cell) sector.grid.cells[cell] = static_cast<std::uint8_t>(cell % 2);
+    sector.grid.cells[3 + 16 * 5 + 256 * 7] = 77;
+    const Bytes file = write_sector(sector);
+    const SectorView view = open(file);
+    EXPECT_EQ(find_probe(view, {-64, 128, 8}), 0);
+    EXPECT_EQ(find_probe(view, {-59.9f, 128, 8}), 1);
+    EXPECT_EQ(find_probe(view, {-0.1f, 191, 23}), 1);
+    EXPECT_EQ(find_probe(view, {-51, 149, 15.5f}), no_probe) << "names a probe that is not there";
+    EXPECT_EQ(find_probe(view, {-1e9f, 128, -1e30f}), 0);
+    EXPECT_EQ(find_probe(view, {1e9f, 1e30f, 1e9f}), 1);
+    EXPECT_EQ(find_probe(view, {std::numeric_limits<float>::quiet_NaN(), 128, 8}), 0);
+}
+
+TEST(SectorViewLookup, InteriorsHoldWhatIsInside) {
+    const Bytes file = golden_bytes_1_2();
+    const SectorView view = open(file);
+    // A box from (-20, 156, 9) to (-12, 164, 13) m, and one with a roof from (-24, 169, 10) to (-8, 185, 18) m, its ridge at 18.94 m.
+    EXPECT_EQ(find_interior(view, {-16, 160, 10}), &view.interiors[0]);
+    EXPECT_EQ(find_interior(view, {-12.01f, 163.99f, 12.99f}), &view.interiors[0]);
+    EXPECT_EQ(find_interior(view, {-11.99f, 160, 10}), nullptr);
+    EXPECT_EQ(find_interior(view, {-16, 177, 18.9f}), &view.interiors[1]);
+    EXPECT_EQ(find_interior(view, {-22, 171, 18.5f}), nullptr) << "beside the ridge";
+    EXPECT_EQ(find_interior(view, {-16, 177, 9.9f}), nullptr);
+    EXPECT_EQ(find_interior(view, {std::numeric_limits<float>::quiet_NaN(), 177, 12}), nullptr);
 }
 
 TEST(UnpackSector, GivesTheRawFile) {

@@ -368,6 +368,10 @@ TEST(BadInput, ProbesVolumesAndLightsFarAway) {
         b.add_node({.mesh = b.add_mesh(ground(1)), .translation = glm::dvec3(1e20, 0, 0), .role = role});
         expect_refused(b.import(), {"map.gltf", "node 0", "10^9"});
     }
+    // A probe beyond the last sector that has a number: it would have wrapped around into another (found by a review).
+    GltfBuilder beyond;
+    beyond.add_node({.translation = glm::dvec3(4'194'314, 1, -10), .role = "probe"});
+    expect_refused(beyond.import(), {"map.gltf", "node 0", "4194314 m from the origin"});
     GltfBuilder b;
     b.add_node({.light = b.add_light(Json::parse(R"({"type": "point"})")), .translation = glm::dvec3(1e20, 0, 0)});
     expect_refused(b.import(), {"map.gltf", "node 0", "10^9"});

@@ -65,7 +65,7 @@ inline constexpr Error transfer_band("TRANSFER_BAND", physics, "a transfer coeff
 inline constexpr Error energy("ENERGY", physics, "under a sky of radiance 1 a probe sees more than 1");
 inline constexpr Error static_irradiance_range("STATIC_IRRADIANCE_RANGE", physics, "a static irradiance is negative");
 inline constexpr Error local_transfer_range("LOCAL_TRANSFER_RANGE", physics, "a local transfer coefficient is larger than light that is nowhere negative allows");
-inline constexpr Error local_reciprocity("LOCAL_RECIPROCITY", physics, "local transfer there and back differs by more than noise explains");
+inline constexpr Warning local_reciprocity("LOCAL_RECIPROCITY", physics, "local transfer there and back has little in common: rows may belong to other probes, or most probes touch a wall");
 inline constexpr Error interior_open("INTERIOR_OPEN", physics, "the mesh of an interior is not closed");
 inline constexpr Warning interior_inside_out("INTERIOR_INSIDE_OUT", physics, "the mesh of an interior encloses no volume, or its triangles face inwards");
 inline constexpr Warning interior_probe("INTERIOR_PROBE", physics, "the probe of an interior stands outside of its bounds");
@@ -82,7 +82,7 @@ inline constexpr Error local_source_duplicate("LOCAL_SOURCE_DUPLICATE", index, "
 inline constexpr Error neighbour_source("NEIGHBOUR_SOURCE", borders, "a local source is a probe that the neighbouring sector does not have");
 inline constexpr Error neighbour_distance("NEIGHBOUR_DISTANCE", borders, "automatic probes on both sides of a border stand nearer than the minimal distance: the sectors were placed on different maps");
 inline constexpr Warning neighbour_sections("NEIGHBOUR_SECTIONS", borders, "of two neighbouring sectors one has a section of light that the other has not");
-inline constexpr Warning neighbour_step("NEIGHBOUR_STEP", borders, "light changes across a border much more than inside the two sectors");
+inline constexpr Warning neighbour_step("NEIGHBOUR_STEP", borders, "light changes across a border much more than inside the two sectors: they were baked of different maps, or a wall stands on the border");
 
 inline constexpr Error set_duplicate("SET_DUPLICATE", set, "two files hold the same sector");
 inline constexpr Error set_settings("SET_SETTINGS", set, "the sector was baked with another settings key than most of the folder");

@@ -1,5 +1,5 @@
 // Reading a sector file from untrusted bytes. Never throws on bad input, never reads outside `bytes`, allocates
-// no more than a sector's own size (at most a few MiB, with the most local transfer there can be).
+// little more than twice what its sections say they hold: some kilobytes, 16 MiB a section at most.
 #pragma once
 
 #include <drtv/sector.h>

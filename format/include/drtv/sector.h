@@ -33,7 +33,7 @@ struct Probe {
     bool operator==(const Probe&) const = default;
 };
 
-// Nearest probe a cell. Cell (x, y, z) stands at index x + 16 y + 256 z; cells are 4 m wide.
+// A probe a cell, the nearest that its centre sees. Cell (x, y, z) stands at index x + 16 y + 256 z; cells are 4 m wide.
 // The reader takes any index: one that is not below the number of probes counts as `no_probe` (SPEC.md, section 5.5).
 struct Grid {
     std::int32_t z_origin_units = 0;      // bottom of the lowest cells, 2^-10 m
@@ -162,6 +162,7 @@ inline constexpr std::int32_t max_z_origin_units = 1 << 30;         // of the se
 inline constexpr std::uint32_t max_cell_height_units = 1u << 24;   // so that 16 cells fit 32 bits too
 inline constexpr std::size_t max_interiors = 1024;
 inline constexpr std::size_t max_interior_vertices = 1u << 16;  // of one interior
+inline constexpr std::size_t max_interiors_vertices = 1u << 21;  // of all together, so that they fit a section
 inline constexpr std::size_t max_interior_triangles = 1u << 18;  // of all together
 inline constexpr std::uint8_t max_interior_shift = 10;
 inline constexpr std::int32_t max_interior_origin_units = (1 << 30) + (1 << 27);  // 131 km beyond the farthest sector

@@ -31,7 +31,7 @@ struct Report {
 struct ValidateOptions {
     bool quick = false;              // structure and checksums only: what a reader checks
     std::size_t max_findings = 100;  // shown; REQUIRES: > 0
-    std::span<const Issue* const> ignored = {};  // neither shown nor counted
+    std::span<const Issue* const> ignored = {};  // neither shown nor counted; errors of the structure are nevertheless
 };
 
 // Any bytes give a report. Thread-safe.

@@ -41,7 +41,7 @@ struct RegionFinding {
 };
 
 // Findings of the groups `borders` and `set`, by sector, then in the order of the table of issues. The order of `sectors` decides
-// nothing but which of two files of one sector counts.
-[[nodiscard]] std::vector<RegionFinding> validate_region(std::span<const RegionSector> sectors);
+// nothing but which of two files of one sector counts. Sectors `also_there` are (i, j) of files that cannot be read: no holes.
+[[nodiscard]] std::vector<RegionFinding> validate_region(std::span<const RegionSector> sectors, std::span<const std::array<std::int32_t, 2>> also_there = {});
 
 }  // namespace drtv

@@ -70,7 +70,31 @@ struct SectorView {
 ReadStatus open_sector(std::span<const std::uint8_t> bytes, SectorView& view);
 
 // The same file with every section raw. Of sections that this reader does not know, nothing is kept. On error `raw_file` is left
-// as it was.
+// as it was. (A vector's bytes start at a multiple of 16 with the allocators of 64-bit systems, so that they can be opened.)
 ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& raw_file);
+
+// World position of a probe in metres; exact in float within 16 km of the origin. REQUIRES: p < sector.probe_count.
+[[nodiscard]] Float3 position_m(const SectorView& sector, std::size_t p);
+
+// The probe that lights a world position, by the grid (SPEC.md, section 5.5); `no_probe` where the sector has none: then nothing is added. What is beside,
+// above or below the grid takes the nearest cell.
+[[nodiscard]] std::uint8_t find_probe(const SectorView& sector, const Float3& world_m);
+
+// REQUIRES: the sector has static irradiance, p < sector.probe_count.
+[[nodiscard]] StaticIrradiance static_irradiance_of(const SectorView& sector, std::size_t p);
+
+// What a light at source `s` (an index of local_sources) sends to probe `p` by bounce. Codes are null where the two are no pair: then the light
+// adds nothing. REQUIRES: the sector has local transfer, p < sector.probe_count, s < sector.local_sources.size().
+struct LocalPair {
+    const LightCodes* codes = nullptr;
+    float scale = 0;
+};
+[[nodiscard]] LocalPair find_local_pair(const SectorView& sector, std::size_t p, std::size_t s);
+
+// Whether a world position is inside the closed mesh, by its winding number, so that triangles without an area do no harm; on the mesh itself either.
+[[nodiscard]] bool is_inside(const SectorView& sector, const StoredInterior& interior, const Float3& world_m);
+
+// The first interior that holds a world position; null where none does.
+[[nodiscard]] const StoredInterior* find_interior(const SectorView& sector, const Float3& world_m);
 
 }  // namespace drtv

@@ -48,6 +48,17 @@ void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light)
     }
 }
 
+Float3 shade_local(const LightCodes& pair, float scale, const Float3& intensity, const Float3& normal) {
+    const Float4 y = evaluate_sh(normal);
+    Float3 light{};
+    for (std::size_t c = 0; c < channel_count; ++c) {
+        Float4 local;
+        for (std::size_t i = 0; i < sh_count; ++i) local[i] = decode_fixed(pair[c][i], scale);
+        light[c] = intensity[c] * dot4(local, y);
+    }
+    return light;
+}
+
 Float3 shade_ambient(const BasisColours& colours, const Float3& normal) {
     Float3 ambient{};
     for (std::size_t b = 0; b < basis_count; ++b) {

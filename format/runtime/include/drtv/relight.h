@@ -28,6 +28,10 @@ using BasisColours = std::array<Float3, basis_count>;
 // Adds the light of the map's own lights, which no time of day changes.
 void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light);
 
+// What a light at a local source adds to the ambient light at a unit normal, by bounce: its direct light is the game's. `pair` and `scale` are what
+// find_local_pair gives, `intensity` is the light's in W/sr. Noise can make it a little less than 0.
+[[nodiscard]] Float3 shade_local(const LightCodes& pair, float scale, const Float3& intensity, const Float3& normal);
+
 // Ambient at a unit normal by the basis weights of the shader (s43-s44).
 [[nodiscard]] Float3 shade_ambient(const BasisColours& colours, const Float3& normal);
 
