@@ -55,7 +55,7 @@ rm -rf "$demo_dir/sectors"
 "$bin/bake" submit "$demo_dir/map/island.gltf" --preset "$preset" --wait --pull "$demo_dir/sectors"
 
 say "Validate"
-"$bin/drtv" validate "$demo_dir/sectors"
+"$bin/drtv" validate --neighbours "$demo_dir/sectors"
 
 say "Picture"
 "$bin/drtv" preview "$demo_dir/sectors" --out "$demo_dir/island.png"
