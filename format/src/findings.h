@@ -4,7 +4,6 @@
 #include <drtv/conventions.h>
 #include <drtv/validate.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,12 +21,7 @@ class Findings {
     // not shown.
     template <class Path, class Message>
     void add(const Issue& issue, std::uint64_t offset, std::optional<double> value, Path path, Message message) {
-        // What cannot be read cannot be valid, whoever wants to ignore it.
-        const bool unreadable = issue.group == IssueGroup::structure && issue.severity == Severity::error;
-        if (!unreadable && std::ranges::find(options_.ignored, &issue) != options_.ignored.end()) return;
-        ++(issue.severity == Severity::error ? report_.errors : report_.warnings);
-        if (report_.findings.size() < options_.max_findings) report_.findings.push_back({&issue, offset, path(), value, message()});
-        else report_.truncated = true;
+        if (admit(report_, issue, options_)) report_.findings.push_back({&issue, offset, path(), value, message()});
     }
     [[nodiscard]] Report take() { return std::move(report_); }
 

@@ -1,5 +1,7 @@
 #include <drtv/sector.h>
 
+#include "position.h"
+
 namespace drtv {
 
 std::string_view name_of(ProbeKind kind) {
@@ -11,16 +13,8 @@ std::string_view name_of(ProbeKind kind) {
     return "unknown";
 }
 
-std::array<std::int32_t, 3> position_units(const Sector& sector, const Probe& probe) {
-    constexpr std::int32_t side = sector_size_m * position_units_per_m;
-    return {sector.i * side + probe.position[0], sector.j * side + probe.position[1],
-            sector.z_origin_units + (std::int32_t{probe.position[2]} << sector.z_shift)};
-}
+std::array<std::int32_t, 3> position_units(const Sector& sector, const Probe& probe) { return units_of(sector, probe.position); }
 
-Float3 position_m(const Sector& sector, const Probe& probe) {
-    const auto units = position_units(sector, probe);
-    return {static_cast<float>(units[0]) * position_unit_m, static_cast<float>(units[1]) * position_unit_m,
-            static_cast<float>(units[2]) * position_unit_m};
-}
+Float3 position_m(const Sector& sector, const Probe& probe) { return metres_of(position_units(sector, probe)); }
 
 }  // namespace drtv

@@ -7,6 +7,7 @@
 #include "sections.h"
 #include "validate_rules.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace drtv {
@@ -30,11 +31,6 @@ const Issue& issue_of(ReadError error) {
     return issue::section;
 }
 
-layout::Place place_of(const SectionTable& table, SectionKind kind) {
-    const SectionEntry* entry = table.find(kind);
-    return entry == nullptr ? layout::Place{} : layout::Place{entry->offset, entry->codec == static_cast<std::uint8_t>(Codec::raw)};
-}
-
 void check_unknown_sections(const SectionTable& table, const Sections& sections, Findings& findings) {
     for (std::size_t n = 0; n < table.count; ++n) {
         const SectionEntry& entry = table.entries[n];
@@ -45,6 +41,16 @@ void check_unknown_sections(const SectionTable& table, const Sections& sections,
 }
 
 }  // namespace
+
+bool admit(Report& report, const Issue& issue, const ValidateOptions& options) {
+    // What cannot be read cannot be valid, whoever wants to ignore it.
+    const bool unreadable = issue.group == IssueGroup::structure && issue.severity == Severity::error;
+    if (!unreadable && std::ranges::find(options.ignored, &issue) != options.ignored.end()) return false;
+    ++(issue.severity == Severity::error ? report.errors : report.warnings);
+    if (report.findings.size() < options.max_findings) return true;
+    report.truncated = true;
+    return false;
+}
 
 Report validate_sector(std::span<const std::uint8_t> bytes, const ValidateOptions& options) {
     assert(options.max_findings > 0);
@@ -61,15 +67,15 @@ Report validate_sector(std::span<const std::uint8_t> bytes, const ValidateOption
 
     Sector sector;
     copy_sector(bytes, sections, sector);
-    check_settings(sector, place_of(table, SectionKind::bake), findings);
-    check_probe_positions(sector, place_of(table, SectionKind::positions), findings);
-    check_sky_visibility(sector, place_of(table, SectionKind::sky_visibility), findings);
-    check_transfer(sector, place_of(table, SectionKind::transfer), findings);
-    check_grid(sector, place_of(table, SectionKind::grid), findings);
-    check_static_irradiance(sector, place_of(table, SectionKind::static_irradiance), findings);
-    check_local_transfer(sector, place_of(table, SectionKind::local_transfer), findings);
-    check_convergence(sector, place_of(table, SectionKind::convergence), findings);
-    check_interiors(sector, place_of(table, SectionKind::interiors), findings);
+    check_settings(sector, sections.of(SectionKind::bake).place, findings);
+    check_probe_positions(sector, sections.of(SectionKind::positions).place, findings);
+    check_sky_visibility(sector, sections.of(SectionKind::sky_visibility).place, findings);
+    check_transfer(sector, sections.of(SectionKind::transfer).place, findings);
+    check_grid(sector, sections.of(SectionKind::grid).place, findings);
+    check_static_irradiance(sector, sections.of(SectionKind::static_irradiance).place, findings);
+    check_local_transfer(sector, sections.of(SectionKind::local_transfer).place, findings);
+    check_convergence(sector, sections.of(SectionKind::convergence).place, findings);
+    check_interiors(sector, sections.of(SectionKind::interiors).place, findings);
     return findings.take();
 }
 

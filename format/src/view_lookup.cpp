@@ -1,10 +1,11 @@
 // Questions that a game asks of a sector where it lies.
 #include <drtv/view.h>
 
+#include "position.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 namespace drtv {
@@ -29,12 +30,7 @@ double solid_angle(const Double3& a, const Double3& b, const Double3& c) {
 
 }  // namespace
 
-Float3 position_m(const SectorView& sector, std::size_t p) {
-    constexpr std::int32_t side = sector_size_m * position_units_per_m;
-    const auto& stored = sector.positions[p].position;
-    const auto metres = [](std::int32_t units) { return static_cast<float>(units) * position_unit_m; };
-    return {metres(sector.i * side + stored[0]), metres(sector.j * side + stored[1]), metres(sector.z_origin_units + (std::int32_t{stored[2]} << sector.z_shift))};
-}
+Float3 position_m(const SectorView& sector, std::size_t p) { return metres_of(units_of(sector, sector.positions[p].position)); }
 
 std::uint8_t find_probe(const SectorView& sector, const Float3& world_m) {
     const StoredGrid& grid = *sector.grid;

@@ -44,10 +44,8 @@ Float3 change_colour(double change) {
 std::string text(const Place& place) { return "(" + std::to_string(place[0]) + ", " + std::to_string(place[1]) + ")"; }
 
 std::optional<Side> files_of(const std::string& path, int& exit_code) {
-    std::string error;
-    const auto files = sector_files(path, error);
+    const auto files = sector_files(path);
     if (!files) {
-        complain(error);
         exit_code = exit_unreadable;
         return std::nullopt;
     }

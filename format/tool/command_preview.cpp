@@ -56,12 +56,8 @@ std::optional<PreviewArguments> parse(Arguments arguments) {
 int run_preview(Arguments arguments) {
     const auto parsed = parse(arguments);
     if (!parsed) return exit_usage;
-    std::string error;
-    const auto files = sector_files(parsed->folder, error);
-    if (!files) {
-        complain(error);
-        return exit_unreadable;
-    }
+    const auto files = sector_files(parsed->folder);
+    if (!files) return exit_unreadable;
     RegionPicture picture;
     for (const std::string& file : *files) {
         int exit_code = exit_valid;
@@ -71,7 +67,7 @@ int run_preview(Arguments arguments) {
     }
     const auto image = draw(picture, parsed->metres_per_pixel);
     if (!image) return exit_usage;
-    if (!write_file(parsed->out, encode_png(*image), error)) {
+    if (std::string error; !write_file(parsed->out, encode_png(*image), error)) {
         complain(error);
         return exit_unreadable;
     }

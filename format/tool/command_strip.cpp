@@ -77,9 +77,8 @@ bool is_within(const std::string& in, const std::string& out) {
 
 // Sector files below the folder `out` that are not among the files just written.
 std::size_t left_behind(const std::string& out, const std::set<fs::path>& written) {
-    std::string ignored;
     std::size_t others = 0;
-    if (const auto files = sector_files(out, ignored)) {
+    if (const auto files = sector_files(out)) {
         for (const std::string& file : *files) others += written.contains(fs::path(file).lexically_normal()) ? 0u : 1u;
     }
     return others;
@@ -90,12 +89,8 @@ std::size_t left_behind(const std::string& out, const std::set<fs::path>& writte
 int run_strip(Arguments arguments) {
     const auto request = parse(arguments);
     if (!request) return exit_usage;
-    std::string error;
-    const auto files = sector_files(request->in, error);
-    if (!files) {
-        complain(error);
-        return exit_unreadable;
-    }
+    const auto files = sector_files(request->in);
+    if (!files) return exit_unreadable;
     if (is_within(request->in, request->out)) {
         complain("strip: " + request->out + " is, or lies in, " + request->in + ": write to another place");
         return exit_usage;
@@ -125,7 +120,7 @@ int run_strip(Arguments arguments) {
         const std::string target = target_of(file, *request);
         std::error_code ignored;
         if (const fs::path folder = fs::path(target).parent_path(); !folder.empty()) fs::create_directories(folder, ignored);
-        if (!write_file(target, stripped, error)) {
+        if (std::string error; !write_file(target, stripped, error)) {
             complain(error);
             return exit_unreadable;
         }

@@ -130,11 +130,7 @@ void check_region(const Request& request, std::span<CheckedFile* const> files) {
     }
     for (RegionFinding& found : validate_region(sectors, unreadable)) {
         Report& report = file_of[found.sector]->report;
-        const Issue* issue = found.finding.issue;
-        if (std::ranges::find(request.ignored, issue) != request.ignored.end()) continue;
-        ++(issue->severity == Severity::error ? report.errors : report.warnings);
-        if (report.findings.size() < request.options.max_findings) report.findings.push_back(std::move(found.finding));
-        else report.truncated = true;
+        if (admit(report, *found.finding.issue, request.options)) report.findings.push_back(std::move(found.finding));
     }
 }
 
@@ -187,15 +183,13 @@ int run_validate(Arguments arguments) {
     std::vector<CheckedFile> files;
     std::set<std::filesystem::path> known;
     for (const std::string& path : request->paths) {
-        std::string error;
-        if (const auto found = sector_files(path, error)) {
+        if (const auto found = sector_files(path)) {
             for (const std::string& file : *found) {
                 std::error_code code;
                 if (!known.insert(std::filesystem::weakly_canonical(file, code)).second) continue;  // named twice
                 files.push_back({file, sector_in_name(file), {}, {}, {}});
             }
         } else {
-            complain(error);
             exit_code = exit_unreadable;
         }
     }

@@ -68,11 +68,11 @@ std::string format_version(std::span<const std::uint8_t> bytes) {
     return number(4) + "." + number(6);
 }
 
-std::optional<std::vector<std::string>> sector_files(const std::string& path, std::string& error) {
+std::optional<std::vector<std::string>> sector_files(const std::string& path) {
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
     if (!fs::exists(status)) {
-        error = (path.empty() ? "\"\"" : path) + " does not exist";
+        complain((path.empty() ? "\"\"" : path) + " does not exist");
         return std::nullopt;
     }
     if (!fs::is_directory(status)) return std::vector<std::string>{path};
@@ -83,11 +83,11 @@ std::optional<std::vector<std::string>> sector_files(const std::string& path, st
         if (entry->path().extension() == ".drtv" && entry->is_regular_file(ignored)) files.push_back(entry->path().string());
     }
     if (code) {
-        error = "cannot read the folder " + path + ": " + code.message();
+        complain("cannot read the folder " + path + ": " + code.message());
         return std::nullopt;
     }
     if (files.empty()) {
-        error = "the folder " + path + " holds no .drtv file";
+        complain("the folder " + path + " holds no .drtv file");
         return std::nullopt;
     }
     std::sort(files.begin(), files.end());

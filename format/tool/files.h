@@ -21,8 +21,9 @@ namespace drtv::tool {
 // "1.0" from the header of a sector file. REQUIRES: the file was read without error.
 [[nodiscard]] std::string format_version(std::span<const std::uint8_t> bytes);
 
-// `path` itself when it is a file; all regular files `*.drtv` below it, sorted, when it is a folder.
-[[nodiscard]] std::optional<std::vector<std::string>> sector_files(const std::string& path, std::string& error);
+// `path` itself when it is a file; all regular files `*.drtv` below it, sorted, when it is a folder. Nothing where there
+// is none: then the reason is told.
+[[nodiscard]] std::optional<std::vector<std::string>> sector_files(const std::string& path);
 
 // The sector in a file. Nothing where it cannot be read: then the reason is told and `exit_code` is set. `bytes`, where given, gets
 // the file.

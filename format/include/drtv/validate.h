@@ -34,6 +34,9 @@ struct ValidateOptions {
     std::span<const Issue* const> ignored = {};  // neither shown nor counted; errors of the structure are nevertheless
 };
 
+// Counts a finding of this issue, unless it is ignored. True where it is to be appended to report.findings: not behind the cap.
+[[nodiscard]] bool admit(Report& report, const Issue& issue, const ValidateOptions& options);
+
 // Any bytes give a report. Thread-safe.
 [[nodiscard]] Report validate_sector(std::span<const std::uint8_t> bytes, const ValidateOptions& options = {});
 
