@@ -7,8 +7,6 @@
 
 namespace drtv::placement {
 
-inline constexpr std::int32_t ground_lattice_m = 4;      // s15
-inline constexpr std::int32_t vegetation_lattice_m = 8;  // s16
 inline constexpr float probe_height_m = 1;               // above the surface or the box
 inline constexpr float least_free_height_m = 1.5f;
 

@@ -17,8 +17,8 @@
 namespace drtv::placement {
 namespace {
 
-// Share of test rays that may meet backs; more, and the probe is inside something.
-constexpr double most_backs = 0.25;
+// Of 26 test rays; more, and the probe is inside something.
+constexpr std::size_t most_backs = 6;
 
 // The 26 directions from a cube's centre to its faces, edges and corners; up first, so that a probe that must
 // move goes up rather than sideways.
@@ -89,9 +89,7 @@ class Placer {
     }
 
     [[nodiscard]] bool in_solid(const Position& position) const {
-        std::size_t backs = 0;
-        for (const glm::vec3& direction : test_directions) backs += surroundings_.meets_back(metres(position), direction) ? 1u : 0u;
-        return static_cast<double>(backs) > most_backs * static_cast<double>(test_directions.size());
+        return is_in_solid(surroundings_.backs_met(metres(position), test_directions));
     }
 
     [[nodiscard]] bool in_volume(const Position& position) const {
@@ -193,6 +191,12 @@ class Placer {
 }  // namespace
 
 glm::vec3 metres(const Position& position) { return glm::vec3(position) * (1.0f / units_per_m); }
+
+std::span<const glm::vec3> solid_test_directions() { return test_directions; }
+
+bool is_in_solid(std::size_t backs) { return backs > most_backs; }
+
+std::size_t backs_to_flip(std::size_t backs) { return is_in_solid(backs) ? backs - most_backs : most_backs + 1 - backs; }
 
 float decision_margin_m(const Settings& settings) {
     // A decision waits for those of higher classes, one step of at most the distance each: the ground's and the

@@ -26,6 +26,10 @@ inline constexpr std::int32_t units_per_m = 1024;
 inline constexpr std::int32_t sector_size_m = 64;
 inline constexpr std::size_t max_probes = 255;
 
+// Columns stand in the middles of these squares of the world.
+inline constexpr std::int32_t ground_lattice_m = 4;      // s15
+inline constexpr std::int32_t vegetation_lattice_m = 8;  // s16
+
 using Position = glm::ivec3;  // world, in units of 2^-10 m
 
 [[nodiscard]] glm::vec3 metres(const Position& position);
@@ -48,8 +52,8 @@ struct Box {
 struct Surroundings {
     // All crossings of the vertical line at (x, y) with static objects, from the top down; replaces the vector.
     std::function<void(glm::vec2, std::vector<ColumnHit>&)> column;
-    // Whether the closest hit of the ray is the back of a one-sided surface.
-    std::function<bool(const glm::vec3& origin, const glm::vec3& direction)> meets_back;
+    // Of rays from a point, how many meet the back of a one-sided surface first.
+    std::function<std::size_t(const glm::vec3& origin, std::span<const glm::vec3> directions)> backs_met;
     // Whether the straight line between two points is free.
     std::function<bool(const glm::vec3&, const glm::vec3&)> sees;
 };
@@ -81,6 +85,12 @@ struct Input {
     std::span<const glm::dvec3> manual;      // all manual probes of the map
     std::span<const ClosedVolume> no_probes; // all such volumes of the map
 };
+
+// A point stands in a solid when more than a quarter of these rays meet a back.
+[[nodiscard]] std::span<const glm::vec3> solid_test_directions();
+[[nodiscard]] bool is_in_solid(std::size_t backs);
+// How many of the rays would have to end otherwise for the answer to change.
+[[nodiscard]] std::size_t backs_to_flip(std::size_t backs);
 
 // How far from the sector's border the surroundings are asked: columns, vegetation, rays' origins.
 [[nodiscard]] float decision_margin_m(const Settings& settings);

@@ -33,7 +33,7 @@ FOREIGN = {
     r"CGAL/": {"placement"},
     r"glm/": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake"},
     r"tbb/": {"bakerd/bake", "bakerd/farm"},
-    r"zstd\.h": {"format"},
+    r"zstd\.h": {"format", "bakerd/bake"},
     r"sqlite3\.h": {"bakerd/farm"},
     r"(grpcpp|grpc)/": {"bakerd/service", "client"},
     r"google/protobuf/": set(),

@@ -79,8 +79,8 @@ constexpr float faint = 0.01f;
 class Integrator {
   public:
     Integrator(const trace::Scene& scene, const StaticLights& lights, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings,
-               RayLog* log)
-        : scene_(scene), samples_(samples), settings_(settings), log_(log), probe_(glm::vec3(position_units) * position_unit_m), shift_(digital_shift(position_units)),
+               const RayWatch& watch)
+        : scene_(scene), samples_(samples), settings_(settings), watch_(watch), probe_(glm::vec3(position_units) * position_unit_m), shift_(digital_shift(position_units)),
           next_event_(scene, lights, probe_, settings.reach_m), lit_(!next_event_.idle()) {}
 
     ProbeLight run() {
@@ -137,8 +137,9 @@ class Integrator {
         float density = uniform_density, footprint_m = 0;
         for (std::uint32_t bounce = 0;; ++bounce) {
             ++light_.rays;
-            if (log_ != nullptr) log_->paths.push_back(ray);
+            if (watch_.log != nullptr) watch_.log->paths.push_back(ray);
             std::optional<trace::Hit> hit = scene_.closest(ray);
+            note_path(ray, hit ? hit->distance_m : ray.far_m, weights, throughput, n, bounce);
             if (!hit) hit = doubted(ray);
             if (!hit) {
                 if (bounce == 0) add_sky(weights, half);
@@ -154,6 +155,7 @@ class Integrator {
             }
             if (lit_ && surface.emission != glm::vec3(0)) add_emission_met(ray, *hit, surface.emission, density, weights, throughput);
             if (bounce == settings_.bounces) return;
+            if (transmitted_share(surface) > 0) note_path(ray, end_of_beyond_surface(ray, *hit), weights, throughput, n, bounce);
             if (lit_) add_light_at(ray, *hit, surface, n, bounce + 1, weights, throughput);
             const std::optional<Scattered> next = scatter(scene_, ray, *hit, surface, shifted(point, shift_, 2 + 2 * std::size_t{bounce}));
             if (!next) return;
@@ -162,6 +164,14 @@ class Integrator {
             ray = {next->origin, next->direction, exit_distance(next->origin, next->direction, probe_, settings_.reach_m)};
         }
     }
+
+    // What a change on this part of the path could change at most, as a share of the mean over the cosine around a basis direction.
+    void note_path(const trace::Ray& ray, float length_m, const BasisWeights& weights, const glm::vec3& throughput, std::uint32_t n, std::uint32_t bounce) {
+        if (watch_.footprint == nullptr || bounce == 0) return;
+        watch_.footprint->path(ray, length_m, share_of(weights) * brightest(throughput) * 4 / static_cast<float>(samples_.count()), n);
+    }
+
+    static float share_of(const BasisWeights& weights) { return std::max({weights[0], weights[1], weights[2], weights[3]}); }
 
     // A closed room has no sky at all, not even one ray of it: the first misses are looked at twice. Where these stand, the sky
     // is in sight, and a ray more or less of it is no leak.
@@ -213,7 +223,8 @@ class Integrator {
         const std::optional<Incident> incident = next_event_.draw(probe_, light_sample(n, 0), {0, 0});
         if (!incident || incident->density <= 0) return;
         glm::vec3 light = incident->light * (incident->density / (incident->density + uniform_density) * std::numbers::inv_pi_v<float>);
-        if (!survives(light, n, 0) || !sees(probe_, *incident)) return;
+        const float paths = static_cast<float>(samples_.count());
+        if (!survives(light, n, 0) || !sees(probe_, *incident, basis_weights(incident->direction), light / paths)) return;
         add(block_->static_light, basis_weights(incident->direction), light);
     }
 
@@ -227,7 +238,7 @@ class Integrator {
             glm::vec3 light = throughput * share * incident.light * (std::abs(cosine) * 4 * std::numbers::inv_pi_v<float>);
             if (!survives(light, n, 2 * k + 1)) return;
             const std::optional<glm::vec3> start = through ? beyond_surface(scene_, ray, hit) : before_surface(ray, hit);
-            if (!start || !sees(*start, incident)) return;
+            if (!start || !sees(*start, incident, weights, light / static_cast<float>(samples_.count()))) return;
             if (incident.density > 0) {
                 const float side = transmitted_share(surface);
                 const float density = (through ? side : 1 - side) * std::abs(cosine) * std::numbers::inv_pi_v<float>;
@@ -253,16 +264,20 @@ class Integrator {
 
     static float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
 
-    bool sees(const glm::vec3& start, const Incident& incident) {
+    // `light` times `weights` is what the answer brings to the static irradiance.
+    bool sees(const glm::vec3& start, const Incident& incident, const BasisWeights& weights, const glm::vec3& light) {
         ++light_.shadow_rays;
         const trace::Ray ray = NextEvent::shadow_ray(start, incident);
-        if (log_ != nullptr) log_->shadows.push_back(ray);
+        if (watch_.log != nullptr) watch_.log->shadows.push_back(ray);
+        if (watch_.footprint != nullptr) watch_.footprint->lone(ray, share_of(weights) * brightest(light) / static_irradiance_range);
         return !scene_.occluded(ray);
     }
 
     void add_direct_light() {
         const auto add_incident = [&](const Incident& incident) {
-            if (incident.light != glm::vec3(0) && sees(probe_, incident)) add(direct_, basis_weights(incident.direction), incident.light * std::numbers::inv_pi_v<float>);
+            const BasisWeights weights = basis_weights(incident.direction);
+            const glm::vec3 light = incident.light * std::numbers::inv_pi_v<float>;
+            if (incident.light != glm::vec3(0) && sees(probe_, incident, weights, light)) add(direct_, weights, light);
         };
         for (const Sun& sun : next_event_.suns()) add_incident(next_event_.towards(sun, probe_));
         for (const PointLight* light : next_event_.points()) add_incident(next_event_.towards(*light, probe_));
@@ -306,7 +321,7 @@ class Integrator {
     const trace::Scene& scene_;
     const SampleTable& samples_;
     const IntegrationSettings& settings_;
-    RayLog* const log_;
+    const RayWatch watch_;
     const glm::vec3 probe_;
     const std::array<std::uint32_t, max_sample_dimensions> shift_;
     const NextEvent next_event_;
@@ -329,8 +344,8 @@ std::uint32_t sample_dimensions(std::uint32_t bounces, bool with_lights) {
 }
 
 ProbeLight integrate_probe(const trace::Scene& scene, const StaticLights& lights, const glm::ivec3& position_units, const SampleTable& samples, const IntegrationSettings& settings,
-                           RayLog* log) {
-    return Integrator(scene, lights, position_units, samples, settings, log).run();
+                           const RayWatch& watch) {
+    return Integrator(scene, lights, position_units, samples, settings, watch).run();
 }
 
 }  // namespace drtv::bake

@@ -1,6 +1,7 @@
 // What one probe gets from sky and static lights (DESIGN section 2; s19-s21), by paths from the probe.
 #pragma once
 
+#include "bakerd/bake/footprint_recorder.h"
 #include "bakerd/bake/lights.h"
 #include "bakerd/bake/sampling.h"
 #include "bakerd/trace/scene.h"
@@ -9,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace drtv::bake {
@@ -41,12 +43,18 @@ struct RayLog {
     std::vector<trace::Ray> paths, shadows;
 };
 
+// Who is told of the rays.
+struct RayWatch {
+    FootprintRecorder* footprint = nullptr;  // of all rays but the first of each path
+    RayLog* log = nullptr;
+};
+
 // Numbers per path that `samples` should have.
 [[nodiscard]] std::uint32_t sample_dimensions(std::uint32_t bounces, bool with_lights);
 
 // A pure function of the triangles and lights within reach and the arguments. `samples` has at least
-// sample_dimensions(bounces, false) dimensions. With `log`, the rays are appended to it. REQUIRES: a FloatMode on this thread.
+// sample_dimensions(bounces, false) dimensions. REQUIRES: a FloatMode on this thread; the recorder has begun with this probe.
 [[nodiscard]] ProbeLight integrate_probe(const trace::Scene& scene, const StaticLights& lights, const glm::ivec3& position_units, const SampleTable& samples,
-                                         const IntegrationSettings& settings, RayLog* log = nullptr);
+                                         const IntegrationSettings& settings, const RayWatch& watch = {});
 
 }  // namespace drtv::bake

@@ -12,6 +12,8 @@
 namespace drtv::bake {
 namespace {
 
+float brightest(const glm::vec3& colour) { return std::max({colour.x, colour.y, colour.z}); }
+
 float luminance(const glm::vec3& colour) { return colour.x + colour.y + colour.z; }
 
 glm::vec3 radiometric(const glm::vec3& photometric) { return photometric / lumens_per_watt; }
@@ -56,6 +58,7 @@ EmissiveObject emissive_object(const map::Map& map, std::uint32_t index) {
         const map::Material& material = map.materials[primitive.material];
         const double radiance = static_cast<double>(luminance(radiometric(material.emission) * mean_colour(map, material.emission_texture)));
         if (!(radiance > 0)) continue;
+        emissive.radiance = std::max(emissive.radiance, brightest(radiometric(material.emission)));
         emissive.numbers[p].assign(primitive.triangles.size(), UINT32_MAX);
         for (std::uint32_t t = 0; t < primitive.triangles.size(); ++t) {
             const auto corner = [&](glm::length_t k) { return world_from_object * glm::dvec4(primitive.positions[primitive.triangles[t][k]], 1); };

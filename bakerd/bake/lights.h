@@ -51,6 +51,7 @@ struct EmissiveObject {
     glm::vec3 centre{};
     float radius_m = 0;
     float power = 0;  // W / pi, about
+    float radiance = 0;  // of its brightest material, at most, W/(sr m2)
     std::vector<Triangle> triangles;                     // by primitive and triangle
     std::vector<std::vector<std::uint32_t>> numbers;     // [primitive][triangle] -> index into triangles, or UINT32_MAX
 

@@ -80,8 +80,8 @@ struct Brought {
 
 class LocalIntegrator {
   public:
-    LocalIntegrator(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const SampleTable& samples, const LocalSettings& settings)
-        : scene_(scene), settings_(settings), receiver_count_(receiver_count), samples_(samples) {
+    LocalIntegrator(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const SampleTable& samples, const LocalSettings& settings, FootprintRecorders* recorders)
+        : scene_(scene), settings_(settings), receiver_count_(receiver_count), samples_(samples), recorders_(recorders) {
         for (const glm::ivec3& units : sources) {
             positions_.push_back(glm::vec3(units) * position_unit_m);
             shifts_.push_back(digital_shift(units));
@@ -116,9 +116,13 @@ class LocalIntegrator {
         brought.here.resize(positions_.size());
         brought.there.resize(positions_.size());
         Work work;
+        if (recorders_ != nullptr) {
+            work.recorder = &recorders_->of_this_thread();
+            work.recorder->begin();
+        }
         for (std::uint32_t first = 0; first < samples_.count(); first += group_size) {
             std::vector<Group> groups(settings_.bounces);  // by number of bounces
-            for (std::uint32_t n = first; n < std::min(first + group_size, samples_.count()); ++n) trace_path(p, samples_.point(samples_.side_by_side()[n]), groups, brought.rays);
+            for (std::uint32_t n = first; n < std::min(first + group_size, samples_.count()); ++n) trace_path(p, samples_.side_by_side()[n], groups, brought.rays, work.recorder);
             for (std::uint32_t bounce = 0; bounce < settings_.bounces; ++bounce) {
                 if (!groups[bounce].ends.empty()) join_all(p, groups[bounce], bounce == 0, first * settings_.bounces + bounce, work, brought);
             }
@@ -126,7 +130,8 @@ class LocalIntegrator {
         return brought;
     }
 
-    void trace_path(std::size_t p, std::span<const std::uint32_t> numbers, std::vector<Group>& groups, std::uint64_t& rays) const {
+    void trace_path(std::size_t p, std::uint32_t n, std::vector<Group>& groups, std::uint64_t& rays, FootprintRecorder* recorder) const {
+        const std::span<const std::uint32_t> numbers = samples_.point(n);
         trace::Ray ray{positions_[p], uniform_sphere(shifted(numbers, shifts_[p], 0)), settings_.reach_m};
         End end;
         glm::vec3 carried(1);
@@ -134,6 +139,7 @@ class LocalIntegrator {
         for (std::uint32_t bounce = 0; bounce < settings_.bounces; ++bounce) {
             ++rays;
             const std::optional<trace::Hit> hit = scene_.closest(ray);
+            if (recorder != nullptr) recorder->path(ray, hit ? hit->distance_m : ray.far_m, 1, n);
             if (!hit) return;
             footprint_m += hit->distance_m * later_footprint;
             const trace::Surface surface = scene_.surface(*hit, footprint_m);
@@ -141,6 +147,7 @@ class LocalIntegrator {
             const std::optional<glm::vec3> before = before_surface(ray, *hit);
             if (!before) return;
             const float share = transmitted_share(surface);
+            if (recorder != nullptr && share > 0) recorder->path(ray, end_of_beyond_surface(ray, *hit), 1, n);
             end.position = ray.origin + ray.direction * hit->distance_m;
             end.normal = hit->normal;
             end.before = *before;
@@ -188,6 +195,7 @@ class LocalIntegrator {
         std::vector<Links> joined;
         std::vector<trace::Ray> shadows;
         std::vector<bool> hidden;
+        FootprintRecorder* recorder = nullptr;
     };
 
     // One group of ends, and all other sources that it may serve.
@@ -204,6 +212,9 @@ class LocalIntegrator {
             else work.shadows.push_back(shadow_ray(p, group, links, total, number));
         }
         brought.rays += work.shadows.size();
+        if (work.recorder != nullptr) {
+            for (const trace::Ray& shadow : work.shadows) work.recorder->lone(shadow, 1);
+        }
         scene_.occluded(work.shadows, work.hidden);
         for (std::size_t n = 0; n < work.shadows.size(); ++n) {
             if (!work.hidden[n]) add(p, group, work.joined[n], brought);
@@ -277,6 +288,7 @@ class LocalIntegrator {
     const LocalSettings& settings_;
     const std::size_t receiver_count_;
     const SampleTable& samples_;
+    FootprintRecorders* const recorders_;
     std::vector<glm::vec3> positions_;  // of the sources, receivers first
     std::vector<std::array<std::uint32_t, max_sample_dimensions>> shifts_;
 };
@@ -285,8 +297,8 @@ class LocalIntegrator {
 
 std::uint32_t local_sample_dimensions(std::uint32_t bounces) { return 2 * bounces; }
 
-LocalLight integrate_local(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const SampleTable& samples, const LocalSettings& settings) {
-    return LocalIntegrator(scene, sources, receiver_count, samples, settings).run();
+LocalLight integrate_local(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const SampleTable& samples, const LocalSettings& settings, FootprintRecorders* recorders) {
+    return LocalIntegrator(scene, sources, receiver_count, samples, settings, recorders).run();
 }
 
 }  // namespace drtv::bake

@@ -2,6 +2,7 @@
 // point light at each source brings to each probe.
 #pragma once
 
+#include "bakerd/bake/footprint_recorder.h"
 #include "bakerd/bake/sampling.h"
 #include "bakerd/trace/scene.h"
 
@@ -39,6 +40,6 @@ struct LocalLight {
 // Positions in units of 2^-10 m; samples.count() paths are traced from each. The first `receiver_count` sources are the receivers. A pure function of the triangles
 // within reach of them and of the arguments. Runs on the calling thread's TBB arena; the same numbers on any threads.
 [[nodiscard]] LocalLight integrate_local(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const SampleTable& samples,
-                                         const LocalSettings& settings);
+                                         const LocalSettings& settings, FootprintRecorders* recorders = nullptr);
 
 }  // namespace drtv::bake

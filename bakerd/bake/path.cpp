@@ -36,6 +36,8 @@ std::optional<glm::vec3> beyond_surface(const trace::Scene& scene, const trace::
     return *before + ray.direction * (2 * step);
 }
 
+float end_of_beyond_surface(const trace::Ray& ray, const trace::Hit& hit) { return hit.distance_m + std::max(clearance_along(ray, hit), 0.0f); }
+
 float exit_distance(const glm::vec3& origin, const glm::vec3& direction, const glm::vec3& centre, float radius) {
     const glm::vec3 m = origin - centre;
     const float b = glm::dot(m, direction), c = glm::dot(m, m) - radius * radius;

@@ -22,6 +22,9 @@ inline constexpr float first_footprint = 1 / 16.0f, later_footprint = 1 / 4.0f;
 // The same just beyond the surface that was hit; nothing where another surface lies within the step.
 [[nodiscard]] std::optional<glm::vec3> beyond_surface(const trace::Scene& scene, const trace::Ray& ray, const trace::Hit& hit);
 
+// How far along the ray that looks for other surfaces.
+[[nodiscard]] float end_of_beyond_surface(const trace::Ray& ray, const trace::Hit& hit);
+
 // Where a ray leaves the sphere around `centre`; 0 when it starts outside.
 [[nodiscard]] float exit_distance(const glm::vec3& origin, const glm::vec3& direction, const glm::vec3& centre, float radius);
 

@@ -44,14 +44,16 @@ tl::expected<void, std::string> store_positions(const std::vector<placement::Pla
 
 }  // namespace
 
-float scene_distance_m(const Settings& settings) {
-    // Placement looks over the border, and from there as far as the reach goes.
-    const float distance_m = settings.reach_m + placement::decision_margin_m({settings.min_distance_m}) + settings.min_distance_m;
-    // And so does that of the neighbours.
-    return settings.local_transfer ? distance_m + static_cast<float>(map::sector_size_m) : distance_m;
+float placement_margin_m(const Settings& settings) {
+    const float margin_m = placement::decision_margin_m({settings.min_distance_m});
+    // The neighbours' probes are sources of local transfer.
+    return settings.local_transfer ? margin_m + static_cast<float>(map::sector_size_m) : margin_m;
 }
 
-placement::Surroundings surroundings_of(const trace::Scene& scene, float reach_m) {
+// Placement looks over the border, and from there, moved by some steps, as far as the reach goes.
+float scene_distance_m(const Settings& settings) { return settings.reach_m + placement_margin_m(settings) + settings.min_distance_m; }
+
+placement::Surroundings surroundings_of(const trace::Scene& scene, float reach_m, std::vector<SolidTest>* solid_tests) {
     placement::Surroundings surroundings;
     surroundings.column = [&scene](glm::vec2 at, std::vector<placement::ColumnHit>& hits) {
         std::vector<trace::ColumnHit> found;
@@ -59,9 +61,14 @@ placement::Surroundings surroundings_of(const trace::Scene& scene, float reach_m
         hits.clear();
         for (const trace::ColumnHit& hit : found) hits.push_back({hit.z_m, hit.up_facing, hit.down_facing});
     };
-    surroundings.meets_back = [&scene, reach_m](const glm::vec3& origin, const glm::vec3& direction) {
-        const auto hit = scene.closest({origin, direction, reach_m});
-        return hit && !hit->front && scene.surface(*hit, 0).absorbs;
+    surroundings.backs_met = [&scene, reach_m, solid_tests](const glm::vec3& origin, std::span<const glm::vec3> directions) {
+        const auto meets_back = [&](const glm::vec3& direction) {
+            const auto hit = scene.closest({origin, direction, reach_m});
+            return hit && !hit->front && scene.surface(*hit, 0).absorbs;
+        };
+        const auto backs = static_cast<std::size_t>(std::ranges::count_if(directions, meets_back));
+        if (solid_tests != nullptr) solid_tests->push_back({placement::Position(glm::round(origin * static_cast<float>(placement::units_per_m))), static_cast<std::uint8_t>(placement::backs_to_flip(backs))});
+        return backs;
     };
     surroundings.sees = [&scene](const glm::vec3& from, const glm::vec3& to) {
         const float distance_m = glm::length(to - from);
@@ -76,10 +83,10 @@ tl::expected<PlacedSector, std::string> place_sector(const PlacementVolumes& vol
     const float margin_m = placement::decision_margin_m(how);
     std::vector<placement::Box> vegetation;
     for (const map::Bounds& bounds : scene.vegetation_bounds({corner - margin_m, corner + static_cast<float>(map::sector_size_m) + margin_m})) vegetation.push_back({bounds.low, bounds.high});
-    const auto placement = placement::place_probes({coordinate.i, coordinate.j, vegetation, volumes.manual_probes, volumes.no_probes}, surroundings_of(scene, settings.reach_m), how);
+    PlacedSector placed;
+    const auto placement = placement::place_probes({coordinate.i, coordinate.j, vegetation, volumes.manual_probes, volumes.no_probes}, surroundings_of(scene, settings.reach_m, &placed.solid_tests), how);
     if (!placement) return tl::unexpected(placement.error());
 
-    PlacedSector placed;
     placed.sector.i = coordinate.i;
     placed.sector.j = coordinate.j;
     placed.report = placement->report;

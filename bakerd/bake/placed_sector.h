@@ -2,6 +2,7 @@
 // probes are sources of its local transfer.
 #pragma once
 
+#include "bakerd/bake/footprint.h"
 #include "bakerd/bake/settings.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/trace/scene.h"
@@ -22,6 +23,7 @@ struct PlacedSector {
     Sector sector;  // coordinate, positions and kinds; all else is still empty
     std::vector<placement::Position> positions;  // of its probes, as stored: all that follows is a function of these
     placement::Report report;
+    std::vector<SolidTest> solid_tests;  // on which all this rests
 };
 
 // What placement asks of a map beyond its triangles.
@@ -30,11 +32,14 @@ struct PlacementVolumes {
     std::span<const placement::ClosedVolume> no_probes;
 };
 
+// How far around a sector placement looks down its columns.
+[[nodiscard]] float placement_margin_m(const Settings& settings);
+
 // How far around a sector its scene must reach.
 [[nodiscard]] float scene_distance_m(const Settings& settings);
 
-// REQUIRES: the functions are used while the scene lives.
-[[nodiscard]] placement::Surroundings surroundings_of(const trace::Scene& scene, float reach_m);
+// With `solid_tests`, each is appended to it. REQUIRES: the functions are used while scene and tests live.
+[[nodiscard]] placement::Surroundings surroundings_of(const trace::Scene& scene, float reach_m, std::vector<SolidTest>* solid_tests = nullptr);
 
 // Fails with a sentence (too many manual probes; too high a sector). REQUIRES: the scene holds all within reach and within
 // placement's margin of the sector.

@@ -17,6 +17,8 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
+#include <tuple>
 
 namespace drtv::bake {
 namespace {
@@ -115,8 +117,38 @@ tl::expected<void, std::string> store_interiors(const World& world, const Placed
                                       max_interiors, max_interiors_vertices, max_interior_triangles));
 }
 
+// What one path can bring at most from static lights over static_irradiance_range: from each of its bounces, the radiance of a white surface at the brightest of
+// the lights that a probe can know of. A surface is taken to be at least so far from a lamp.
+float static_gain(const StaticLights& lights, std::span<const placement::Position> probes, const Settings& settings) {
+    constexpr float least_lamp_distance_m = 0.25f;
+    const auto within_reach = [&](const glm::vec3& place, float radius_m) {
+        return std::ranges::any_of(probes, [&](const placement::Position& probe) { return glm::distance(placement::metres(probe), place) - radius_m <= settings.reach_m; });
+    };
+    const auto brightest = [](const glm::vec3& light) { return std::max({light.x, light.y, light.z}); };
+    constexpr float reflected = map::max_albedo * std::numbers::inv_pi_v<float>;
+    float most = 0, suns = 0;
+    for (const PointLight& lamp : lights.points()) {
+        if (within_reach(lamp.position, 0)) most = std::max(most, reflected * brightest(lamp.intensity) / (least_lamp_distance_m * least_lamp_distance_m));
+    }
+    for (const EmissiveObject& emissive : lights.emissive()) {
+        if (within_reach(emissive.centre, emissive.radius_m)) most = std::max(most, emissive.radiance);
+    }
+    for (const Sun& sun : lights.suns()) suns += reflected * brightest(sun.irradiance);
+    float bounces = 0, left = 1;
+    for (std::uint32_t bounce = 0; bounce < std::max(settings.bounces, 1u); ++bounce, left *= map::max_albedo) bounces += left;
+    return bounces * (most + suns) / static_irradiance_range;
+}
+
+// By place; one of each. Neighbours test the same points.
+void sort_tests(std::vector<SolidTest>& tests) {
+    std::ranges::sort(tests, {}, [](const SolidTest& test) { return std::tuple(test.position.y, test.position.x, test.position.z, test.to_flip); });
+    const auto again = std::ranges::unique(tests);
+    tests.erase(again.begin(), again.end());
+}
+
 // Local transfer from the sector's probes and its neighbours'.
-void bake_local(World& world, const trace::Scene& scene, const PlacedSector& placed, const Settings& settings, Sector& sector) {
+void bake_local(World& world, const trace::Scene& scene, const PlacedSector& placed, const Settings& settings, FootprintRecorders& recorders, BakedSector& baked) {
+    Sector& sector = baked.sector;
     std::vector<std::shared_ptr<const Placed>> around;
     std::vector<const PlacedSector*> neighbours;
     for (std::int32_t dj = -1; dj <= 1; ++dj) {
@@ -124,11 +156,14 @@ void bake_local(World& world, const trace::Scene& scene, const PlacedSector& pla
             const map::SectorCoordinate coordinate{placed.sector.i + di, placed.sector.j + dj};
             if ((di == 0 && dj == 0) || !world.has_ground(coordinate)) continue;
             around.push_back(world.placed(coordinate, settings, scene));
-            if (*around.back()) neighbours.push_back(&**around.back());  // what cannot be placed has no probes
+            if (!*around.back()) continue;  // what cannot be placed has no probes
+            const PlacedSector& neighbour = **around.back();
+            neighbours.push_back(&neighbour);
+            baked.footprint.solid_tests.insert(baked.footprint.solid_tests.end(), neighbour.solid_tests.begin(), neighbour.solid_tests.end());
         }
     }
     const LocalSources sources = local_sources(placed, neighbours, settings.reach_m);
-    const LocalLight light = integrate_local(scene, sources.positions, placed.positions.size(), *world.samples(settings.local_rays, local_sample_dimensions(settings.local_bounces)), {settings.local_bounces, settings.reach_m});
+    const LocalLight light = integrate_local(scene, sources.positions, placed.positions.size(), *world.samples(settings.local_rays, local_sample_dimensions(settings.local_bounces)), {settings.local_bounces, settings.reach_m}, &recorders);
     sector.local_transfer = encode_local(sources, light, placed.positions.size(), settings.reach_m);
     sector.convergence->local_bounces = settings.local_bounces;
     sector.convergence->local_rays = settings.local_rays;
@@ -148,12 +183,15 @@ tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoor
     BakedSector baked;
     Sector& sector = baked.sector;
     sector = (*placed)->sector;
+    FootprintRecorders recorders(footprint_grid(coordinate, scene_distance_m(settings), scene->bounds().low.z, scene->bounds().high.z));
     std::vector<ProbeLight> lights(positions.size());
     placement::ProbeGrid grid;
     const auto integrate_all = [&] {
         tbb::parallel_for(std::size_t{0}, positions.size(), [&](std::size_t p) {
             const trace::FloatMode task_float_mode;
-            lights[p] = integrate_probe(*scene, world.lights(), positions[p], *samples, {settings.bounces, settings.reach_m, settings.error});
+            FootprintRecorder& recorder = recorders.of_this_thread();
+            recorder.begin();
+            lights[p] = integrate_probe(*scene, world.lights(), positions[p], *samples, {settings.bounces, settings.reach_m, settings.error}, {&recorder, nullptr});
         });
     };
     const auto index_all = [&] {
@@ -175,7 +213,19 @@ tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoor
     sector.convergence = convergence_of(lights, settings);
     warn_of_backs(world.map(), sector, lights, baked.warnings);
     if (auto stored = store_interiors(world, **placed, sector); !stored) return tl::unexpected(stored.error());
-    if (settings.local_transfer) tbb::this_task_arena::isolate([&] { bake_local(world, *scene, **placed, settings, sector); });
+    Footprint& footprint = baked.footprint;
+    footprint.solid_tests = (*placed)->solid_tests;
+    if (settings.local_transfer) tbb::this_task_arena::isolate([&] { bake_local(world, *scene, **placed, settings, recorders, baked); });
+    footprint.sector = coordinate;
+    footprint.reach_m = settings.reach_m;
+    footprint.rays = settings.rays;
+    footprint.without_bounds = settings.local_transfer || settings.error > 0;
+    footprint.static_gain = static_gain(world.lights(), positions, settings);
+    footprint.placement_m = placement_margin_m(settings);
+    footprint.min_distance_m = settings.min_distance_m;
+    footprint.probes = positions;
+    recorders.store(footprint);
+    sort_tests(footprint.solid_tests);
     return baked;
 }
 

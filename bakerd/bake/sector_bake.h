@@ -2,6 +2,7 @@
 // format version; the same bytes on any number of threads.
 #pragma once
 
+#include "bakerd/bake/footprint.h"
 #include "bakerd/bake/settings.h"
 #include "bakerd/bake/world.h"
 
@@ -18,6 +19,7 @@ namespace drtv::bake {
 struct BakedSector {
     Sector sector;
     std::vector<std::string> warnings;  // one sentence each, for the artist
+    Footprint footprint;
 };
 
 // Runs on the calling thread's TBB arena. Fails with a sentence (too many manual probes; too high a sector).

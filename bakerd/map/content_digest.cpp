@@ -118,8 +118,9 @@ void finish_content(Map& map) {
         return std::tuple(a.position.x, a.position.y, a.position.z) < std::tuple(b.position.x, b.position.y, b.position.z);
     });
     std::vector<Digest> lights, volumes;
-    for (const Light& light : map.lights) lights.push_back(digest_light(light));
-    sort_by(lights, map.lights);
+    for (Light& light : map.lights) light.digest = digest_light(light);
+    std::ranges::stable_sort(map.lights, {}, &Light::digest);
+    for (const Light& light : map.lights) lights.push_back(light.digest);
     for (const Volume& volume : map.volumes) {
         Hasher hasher;
         hasher.add(volume.digest);

@@ -157,6 +157,7 @@ struct Light {
     float range_m = 0;
     float inner_cone_radians = 0, outer_cone_radians = 0;
     glm::vec3 position{}, direction{};  // world; direction in which a spot or directional light shines
+    Digest digest;
     std::string name;
 };
 

@@ -32,11 +32,12 @@ struct Setup {
 
 std::optional<Setup> setup;
 
-std::uint64_t integrate_all(bake::RayLog* log = nullptr) {
+std::uint64_t integrate_all(bake::RayLog* log = nullptr, bake::FootprintRecorder* footprint = nullptr) {
     const trace::FloatMode float_mode;
     std::uint64_t rays = 0;
     for (const glm::ivec3& probe : setup->probes) {
-        const bake::ProbeLight light = bake::integrate_probe(*setup->scene, setup->world->lights(), probe, *setup->samples, {setup->settings.bounces, setup->settings.reach_m, 0}, log);
+        if (footprint != nullptr) footprint->begin();
+        const bake::ProbeLight light = bake::integrate_probe(*setup->scene, setup->world->lights(), probe, *setup->samples, {setup->settings.bounces, setup->settings.reach_m, 0}, {footprint, log});
         rays += light.rays + light.shadow_rays;
     }
     return rays;
@@ -93,6 +94,28 @@ void bake_over_embree(benchmark::State& state) {
     state.counters["over_embree"] = ratios[ratios.size() / 2];
 }
 BENCHMARK(bake_over_embree)->Unit(benchmark::kMillisecond)->Iterations(15);
+
+// The price of noting what the rays cross, measured in pairs.
+void footprint_over_none(benchmark::State& state) {
+    const trace::FloatMode float_mode;
+    std::vector<double> ratios;
+    const map::SectorCoordinate middle = setup->sectors[setup->sectors.size() / 2];
+    const bake::FootprintGrid grid = bake::footprint_grid(middle, setup->settings.reach_m, setup->scene->bounds().low.z, setup->scene->bounds().high.z);
+    for (auto _ : state) {
+        const double start = seconds();
+        benchmark::DoNotOptimize(integrate_all());
+        const double between = seconds();
+        bake::FootprintRecorder recorder(grid);
+        benchmark::DoNotOptimize(integrate_all(nullptr, &recorder));
+        std::vector<std::uint64_t> crossed(grid.column_count());
+        std::vector<std::uint8_t> weights(grid.block_count());
+        recorder.merge_into(crossed, weights);
+        ratios.push_back((seconds() - between) / (between - start));
+    }
+    std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
+    state.counters["over_none"] = ratios[ratios.size() / 2];
+}
+BENCHMARK(footprint_over_none)->Unit(benchmark::kMillisecond)->Iterations(15);
 
 // A whole sector: placement, integration, grid, encoding.
 void whole_sector(benchmark::State& state) {

@@ -48,7 +48,9 @@ bool AnalyticScene::meets_back(const glm::vec3& origin, const glm::vec3& directi
 
 placement::Surroundings AnalyticScene::surroundings() const {
     return {[this](glm::vec2 at, std::vector<ColumnHit>& hits) { column(at, hits); },
-            [this](const glm::vec3& origin, const glm::vec3& direction) { return meets_back(origin, direction); },
+            [this](const glm::vec3& origin, std::span<const glm::vec3> directions) {
+                return static_cast<std::size_t>(std::ranges::count_if(directions, [&](const glm::vec3& direction) { return meets_back(origin, direction); }));
+            },
             [](const glm::vec3&, const glm::vec3&) { return true; }};
 }
 

@@ -50,10 +50,12 @@ TEST(SolidPlacement, QuarterOfTheRaysIsTheLimit) {
     for (const int backs : {6, 7}) {
         const AnalyticScene scene = one_column();
         placement::Surroundings surroundings = scene.surroundings();
-        int asked = 0;
-        surroundings.meets_back = [&](const glm::vec3& origin, const glm::vec3& direction) {
-            EXPECT_NEAR(glm::dot(direction, direction), 1, 1e-6);
-            return origin == placement::metres(start) && asked++ < backs;
+        bool asked = false;
+        surroundings.backs_met = [&](const glm::vec3& origin, std::span<const glm::vec3> directions) -> std::size_t {
+            EXPECT_EQ(directions.size(), 26u);
+            for (const glm::vec3& direction : directions) EXPECT_NEAR(glm::dot(direction, direction), 1, 1e-6);
+            if (origin != placement::metres(start) || std::exchange(asked, true)) return 0;
+            return static_cast<std::size_t>(backs);
         };
         const auto placed = placement::place_probes({0, 0, {}, {}, {}}, surroundings, {});
         ASSERT_TRUE(placed.has_value());

@@ -1,0 +1,50 @@
+// Whether a result that was baked of one map still holds for another: its footprint against what changed between the two.
+#pragma once
+
+#include "bakerd/bake/footprint.h"
+#include "bakerd/bake/inventory.h"
+#include "bakerd/bake/sampling.h"
+#include "bakerd/bake/world.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace drtv::bake {
+
+enum class Verdict : std::uint8_t {
+    hit,       // the same bytes
+    near_hit,  // no coefficient differs by more than the bound
+    rebake,
+};
+
+// Why a result does not hold, or what came nearest to that.
+enum class Cause : std::uint8_t {
+    rays,       // rays cross where the thing is or was
+    placement,  // it may move probes
+    light,      // it shines on the sector's probes
+    interior,   // it is the sector's own
+};
+
+struct Assessment {
+    Verdict verdict = Verdict::hit;
+    float bound = 0;  // on the change of any coefficient, as a share of its range; of a hit 0
+    // Of the change that weighs most; nothing of a hit.
+    std::optional<std::size_t> change;  // index
+    Cause cause = Cause::rays;
+    float weight = 0;  // of that change alone; 1 and more means that no bound is known
+};
+
+// Whether the result of a bake with `settings` holds for the map of `world`; `changes` are those from the baked map to it. `tolerance` is the largest bound of
+// a near hit; 0 asks for the same bytes. The bound covers all changes together, and edits in between are none of its concern: one that is undone counts nothing.
+//
+// Ranges of coefficients: sky visibility 1, radiance transfer 0.2821 (i = 0) and 0.9772 (i > 0), static irradiance static_irradiance_range. What a change
+// brings to static light is bounded as far as no surface stands nearer than 25 cm to a lamp. REQUIRES: a FloatMode on this thread.
+[[nodiscard]] Assessment assess(const Footprint& footprint, const Settings& settings, std::span<const Change> changes, float tolerance, World& world);
+
+// "palm_017 moved: rays cross column (12, 7), weight 0.8 %".
+[[nodiscard]] std::string describe(const Assessment& assessment, std::span<const Change> changes);
+
+}  // namespace drtv::bake

@@ -1,0 +1,71 @@
+// Notes which cells the rays of a sector cross while it is baked. Not thread-safe: one for each thread, merged in the end.
+#pragma once
+
+#include "bakerd/bake/footprint.h"
+#include "bakerd/trace/scene.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace drtv::bake {
+
+class FootprintRecorder {
+  public:
+    explicit FootprintRecorder(const FootprintGrid& grid);
+
+    // What follows is another probe's: shares add up within one, and the largest of all counts.
+    void begin();
+
+    // A part of the path of that number, as far as `length_m`: a change anywhere on it changes what the path brings by at most `share` of a coefficient. Of
+    // a path's parts the first through a block counts alone: later ones must not weigh more.
+    void path(const trace::Ray& ray, float length_m, float share, std::uint32_t number);
+
+    // A ray whose share is its own, as that to a light.
+    void lone(const trace::Ray& ray, float share);
+
+    // Of each column all layers of both, of each block the larger code.
+    void merge_into(std::vector<std::uint64_t>& crossed, std::vector<std::uint8_t>& weights);
+
+  private:
+    // Small: a sector's blocks should stay in the caches.
+    struct Block {
+        std::uint32_t seen = 0;  // by which probe and path last
+        float share = 0;         // of that probe
+    };
+    static constexpr std::uint32_t path_bits = 17;
+
+    template <class Visit>
+    void cross(const trace::Ray& ray, float length_m, Visit visit);
+    void fold(std::size_t block);
+    [[nodiscard]] Block& current(std::size_t block);
+
+    const FootprintGrid grid_;
+    std::vector<std::uint64_t> crossed_;  // by column; with a border of one, where a walk may end by rounding
+    std::vector<Block> blocks_;
+    std::vector<std::uint8_t> most_;      // of the probes before, as codes
+    std::uint32_t probe_ = 0;
+};
+
+// One for each thread that asks.
+class FootprintRecorders {
+  public:
+    explicit FootprintRecorders(const FootprintGrid& grid) : grid_(grid), recorders_(grid) {}
+
+    [[nodiscard]] FootprintRecorder& of_this_thread() { return recorders_.local(); }
+
+    // What all threads noted. REQUIRES: no thread is recording.
+    void store(Footprint& footprint) {
+        footprint.grid = grid_;
+        footprint.crossed.assign(grid_.column_count(), 0);
+        footprint.weights.assign(grid_.block_count(), 0);
+        for (FootprintRecorder& recorder : recorders_) recorder.merge_into(footprint.crossed, footprint.weights);
+    }
+
+  private:
+    const FootprintGrid grid_;
+    tbb::enumerable_thread_specific<FootprintRecorder> recorders_;
+};
+
+}  // namespace drtv::bake

@@ -1,0 +1,184 @@
+#include "bakerd/bake/inventory.h"
+
+#include "bakerd/bake/stored_bytes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <tuple>
+
+namespace drtv::bake {
+namespace {
+
+constexpr std::uint64_t magic = 0x31'4E'49'56'54'52'44;  // "DRTVIN1"
+
+ItemDigest half(const map::Digest& digest) {
+    ItemDigest first{};
+    std::copy_n(digest.bytes.begin(), first.size(), first.begin());
+    return first;
+}
+
+map::Bounds point(const glm::vec3& place) {
+    map::Bounds bounds;
+    bounds.extend(place);
+    return bounds;
+}
+
+ItemDigest digest_of_probe(const glm::dvec3& position) {
+    map::Hasher hasher;
+    hasher.add(position);
+    return half(hasher.finish());
+}
+
+ItemDigest digest_of_interior(const InteriorVolume& interior) {
+    map::Hasher hasher;
+    hasher.add(*interior.probe);
+    hasher.add(interior.stored.origin_units);
+    hasher.add(interior.stored.shift);
+    hasher.add_sized(interior.stored.vertices);
+    hasher.add_sized(interior.stored.triangles);
+    return half(hasher.finish());
+}
+
+// Of a light, all but where it is.
+ItemDigest shape_of_light(const map::Light& light) {
+    map::Hasher hasher;
+    hasher.add(light.colour);
+    for (const float value : {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians}) hasher.add(value);
+    hasher.add(light.direction);
+    return half(hasher.finish());
+}
+
+auto order(const Item& item) { return std::tie(item.kind, item.digest); }
+
+// Those of `a` that are not in `b`, as often as they are there more often.
+std::vector<Item> only_in(const std::vector<Item>& a, const std::vector<Item>& b) {
+    std::vector<Item> only;
+    std::ranges::set_difference(a, b, std::back_inserter(only), {}, order, order);
+    std::ranges::stable_sort(only, {}, [](const Item& item) { return std::tie(item.kind, item.name); });
+    return only;
+}
+
+// What counts as one thing that may have changed; objects may change their role.
+auto identity(const Item& item) {
+    const bool object = item.kind == ItemKind::fixed || item.kind == ItemKind::vegetation;
+    return std::tuple(object ? ItemKind::fixed : item.kind, std::string_view(item.name));
+}
+
+}  // namespace
+
+Inventory take_inventory(const World& world) {
+    Inventory inventory;
+    const map::Map& map = world.map();
+    std::size_t next_emissive = 0;
+    const std::span<const EmissiveObject> emissive = world.lights().emissive();
+    for (std::uint32_t n = 0; n < map.objects.size(); ++n) {
+        const map::Object& object = map.objects[n];
+        const bool shines = next_emissive < emissive.size() && emissive[next_emissive].object == n;
+        if (shines) ++next_emissive;
+        inventory.items.push_back({object.role == map::Role::vegetation ? ItemKind::vegetation : ItemKind::fixed, shines, half(object.digest), half(map.meshes[object.mesh].digest), object.bounds, object.name});
+    }
+    for (const map::Light& light : map.lights) {
+        // Dark ones light nothing (StaticLights).
+        if (!((light.colour.x + light.colour.y + light.colour.z) * light.intensity > 0)) continue;
+        const bool sun = light.kind == map::LightKind::directional;
+        inventory.items.push_back({sun ? ItemKind::sun : ItemKind::lamp, false, half(light.digest), shape_of_light(light), sun ? map::Bounds() : point(light.position), light.name});
+    }
+    for (const map::ManualProbe& probe : map.probes) {
+        inventory.items.push_back({ItemKind::manual_probe, false, digest_of_probe(probe.position), {}, point(glm::vec3(probe.position)), probe.name});
+    }
+    for (const map::Volume& volume : map.volumes) {
+        if (volume.kind != map::VolumeKind::no_probes) continue;
+        map::Bounds bounds;
+        for (const glm::dvec3& position : volume.positions) bounds.extend(glm::vec3(position));
+        inventory.items.push_back({ItemKind::no_probes, false, half(volume.digest), {}, bounds, volume.name});
+    }
+    for (const InteriorVolume& interior : world.interiors()) {
+        if (!interior.probe) continue;  // no file holds it
+        inventory.items.push_back({ItemKind::interior, false, digest_of_interior(interior), {}, point(placement::metres(*interior.probe)), interior.name});
+    }
+    std::ranges::stable_sort(inventory.items, {}, order);
+    return inventory;
+}
+
+// Column by column: alike stands beside alike, for the compression.
+std::vector<std::uint8_t> encode_inventory(const Inventory& inventory) {
+    StoredWriter writer;
+    writer.add(magic);
+    writer.add(static_cast<std::uint64_t>(inventory.items.size()));
+    for (const Item& item : inventory.items) writer.add(static_cast<std::uint8_t>(static_cast<unsigned>(item.kind) | (item.emissive ? 128u : 0u)));
+    for (const Item& item : inventory.items) writer.add(item.digest);
+    for (const Item& item : inventory.items) writer.add(item.shape);
+    for (const Item& item : inventory.items) writer.add(item.bounds);
+    for (const Item& item : inventory.items) writer.add_text(item.name);
+    return writer.compressed();
+}
+
+std::optional<Inventory> decode_inventory(std::span<const std::uint8_t> bytes) {
+    StoredReader reader(bytes);
+    if (reader.read<std::uint64_t>() != magic) return std::nullopt;
+    const auto count = reader.read<std::uint64_t>();
+    Inventory inventory;
+    for (std::uint64_t n = 0; n < count && reader.sound(); ++n) {
+        const auto kind = reader.read<std::uint8_t>();
+        if ((kind & 127u) > static_cast<unsigned>(ItemKind::interior)) return std::nullopt;
+        Item& item = inventory.items.emplace_back();
+        item.kind = static_cast<ItemKind>(kind & 127u);
+        item.emissive = kind >= 128;
+    }
+    for (Item& item : inventory.items) item.digest = reader.read<ItemDigest>();
+    for (Item& item : inventory.items) item.shape = reader.read<ItemDigest>();
+    for (Item& item : inventory.items) item.bounds = reader.read<map::Bounds>();
+    for (Item& item : inventory.items) item.name = reader.read_text();
+    if (!reader.complete()) return std::nullopt;
+    return inventory;
+}
+
+std::vector<Change> changes_between(const Inventory& before, const Inventory& after) {
+    std::vector<Item> gone = only_in(before.items, after.items), come = only_in(after.items, before.items);
+    std::ranges::stable_sort(gone, {}, identity);
+    std::ranges::stable_sort(come, {}, identity);
+    std::vector<Change> changes;
+    auto old_item = gone.begin();
+    auto new_item = come.begin();
+    while (old_item != gone.end() || new_item != come.end()) {
+        if (new_item == come.end() || (old_item != gone.end() && identity(*old_item) < identity(*new_item))) {
+            changes.push_back({ChangeKind::removed, *old_item++, std::nullopt});
+        } else if (old_item == gone.end() || identity(*new_item) < identity(*old_item)) {
+            changes.push_back({ChangeKind::added, std::nullopt, *new_item++});
+        } else {
+            const bool moved = old_item->shape == new_item->shape && old_item->kind == new_item->kind;
+            changes.push_back({moved ? ChangeKind::moved : ChangeKind::changed, *old_item++, *new_item++});
+        }
+    }
+    return changes;
+}
+
+std::string describe(const Change& change) {
+    const auto kind = [&]() -> const char* {
+        switch (change.item().kind) {
+            case ItemKind::fixed:
+            case ItemKind::vegetation: return "an object";
+            case ItemKind::lamp: return "a lamp";
+            case ItemKind::sun: return "a sun";
+            case ItemKind::manual_probe: return "a probe";
+            case ItemKind::no_probes: return "a no_probes volume";
+            case ItemKind::interior: return "an interior";
+        }
+        return "something";
+    };
+    const auto what = [&]() -> const char* {
+        switch (change.kind) {
+            case ChangeKind::added: return "was added";
+            case ChangeKind::removed: return "was deleted";
+            case ChangeKind::moved: return "moved";
+            case ChangeKind::changed: return "changed";
+        }
+        return "changed";
+    };
+    return fmt::format("{} {}", change.item().name.empty() ? std::string(kind()) + " without a name" : change.item().name, what());
+}
+
+}  // namespace drtv::bake
