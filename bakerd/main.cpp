@@ -21,6 +21,7 @@ namespace {
 struct ServeOptions {
     std::string data, listen = "127.0.0.1:7447", executor = "local";
     int threads = 0;
+    std::int64_t cache_bytes = drtv::farm::Farm::Options{}.cache_bytes;
     drtv::service::TlsFiles tls;
 };
 
@@ -41,7 +42,7 @@ int serve(const ServeOptions& options) {
     if (const auto device = drtv::trace::Device::open(); !device) return complain(device.error());
     const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-    auto farm = drtv::farm::Farm::open({options.data, {self, "worker", "--blobs", options.data + "/blobs", "--threads", std::to_string(threads)}, threads});
+    auto farm = drtv::farm::Farm::open({options.data, {self, "worker", "--blobs", options.data + "/blobs", "--threads", std::to_string(threads)}, threads, options.cache_bytes});
     if (!farm) return complain(farm.error().message);
     auto server = drtv::service::Server::start(**farm, options.listen, options.tls);
     if (!server) return complain(server.error());
@@ -78,6 +79,7 @@ int main(int argc, char** argv) {
     serve_command->add_option("--listen", serve_options.listen, "Address and port; anything but loopback should have TLS")->capture_default_str();
     serve_command->add_option("--executor", serve_options.executor, "Where sectors are baked")->check(CLI::IsMember({"local"}))->capture_default_str();
     serve_command->add_option("--threads", serve_options.threads, "Threads to bake with; 0: all")->check(CLI::Range(0, 1024))->capture_default_str();
+    serve_command->add_option("--cache-size", serve_options.cache_bytes, "Bytes of results to keep, as 500MB or 20GB; beyond, those used longest ago go")->transform(CLI::AsSizeValue(true))->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 62))->capture_default_str();
     serve_command->add_option("--tls-cert", serve_options.tls.certificate, "Server certificate (PEM)");
     serve_command->add_option("--tls-key", serve_options.tls.key, "Its key (PEM)");
     serve_command->add_option("--tls-client-ca", serve_options.tls.client_ca, "Authority that signs clients' certificates (PEM)");

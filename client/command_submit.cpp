@@ -38,6 +38,7 @@ tl::expected<v1::Job, std::string> wanted_job(const SubmitOptions& options) {
         if (equals == std::string::npos || equals == 0) return tl::unexpected(fmt::format("--set takes key=value, not '{}'", setting));
         (*job.mutable_settings()->mutable_overrides())[setting.substr(0, equals)] = setting.substr(equals + 1);
     }
+    if (options.exact) (*job.mutable_settings()->mutable_overrides())["tolerance"] = "0";
     if (!options.region.empty()) {
         const auto region = parse_region(options.region);
         if (!region) return tl::unexpected(region.error());
@@ -55,23 +56,28 @@ std::string random_id() {
 
 }  // namespace
 
-int run_submit(Connection& connection, const SubmitOptions& options) {
+tl::expected<v1::Job, std::string> prepare_job(Connection& connection, const SubmitOptions& options) {
     auto job = wanted_job(options);
-    if (!job) return complain(job.error());
+    if (!job) return job;
     const auto local = collect_map(options.maps);
-    if (!local) return complain(local.error());
+    if (!local) return tl::unexpected(local.error());
     if (!options.pull_folder.empty()) {
         // Before anything is baked: a wrong folder should not cost an hour.
-        if (auto made = make_folder(options.pull_folder); !made) return complain(made.error());
+        if (auto made = make_folder(options.pull_folder); !made) return tl::unexpected(made.error());
     }
     catch_interrupt();
     const auto map = upload_map(connection, *local);
-    if (!map) return complain(map.error());
+    if (!map) return tl::unexpected(map.error());
     for (const std::string& warning : map->warnings()) std::fprintf(stderr, "bake: warning: %s\n", warning.c_str());
+    job->set_map(map->name());
+    return job;
+}
 
+int run_submit(Connection& connection, const SubmitOptions& options) {
+    const auto job = prepare_job(connection, options);
+    if (!job) return complain(job.error());
     v1::CreateJobRequest request;
     *request.mutable_job() = *job;
-    request.mutable_job()->set_map(map->name());
     request.set_request_id(random_id());
     grpc::ClientContext context;
     v1::Job created;
@@ -82,13 +88,26 @@ int run_submit(Connection& connection, const SubmitOptions& options) {
     const bool wait = options.wait || !options.pull_folder.empty();
     if (!wait) {
         if (connection.options.json) std::puts(json_line(created).c_str());
-        else std::printf("job %s: %s sectors, %s of them from the cache; watch it with: bake watch %s\n", number.c_str(), with_thousands(created.sectors_total()).c_str(), with_thousands(created.sectors_cached()).c_str(), number.c_str());
+        else std::printf("job %s: %s sectors%s; watch it with: bake watch %s\n", number.c_str(), with_thousands(created.sectors_total()).c_str(), reused_text(created).c_str(), number.c_str());
+        for (const std::string& warning : created.warnings()) std::fprintf(stderr, "bake: warning: %s\n", warning.c_str());
         return 0;
     }
-    const int watched = run_watch(connection, number);
-    if (watched == exit_interrupted || options.pull_folder.empty()) return watched;
-    const int pulled = run_pull(connection, number, options.pull_folder);
-    return watched != 0 ? watched : pulled;
+    if (options.pull_folder.empty()) return run_watch(connection, number);
+    // Files come while the rest is still being baked.
+    FolderPull pull(connection, number, options.pull_folder);
+    tl::expected<void, std::string> pulled;
+    std::int64_t done = 0;
+    const auto pull_new = [&](const v1::Job& now) {
+        if (!pulled || now.sectors_done() == done) return;
+        done = now.sectors_done();
+        pulled = pull.pull();
+    };
+    const int watched = run_watch(connection, number, pull_new);
+    if (watched == exit_interrupted) return watched;
+    if (pulled) pulled = pull.pull();
+    if (!pulled) return complain(pulled.error());
+    pull.report();
+    return watched;
 }
 
 }  // namespace drtv::client

@@ -50,7 +50,7 @@ class InterruptGuard {
     std::thread thread_;
 };
 
-grpc::Status follow(Connection& connection, const std::string& name, Progress& progress, v1::Job& last) {
+grpc::Status follow(Connection& connection, const std::string& name, Progress& progress, const std::function<void(const v1::Job&)>& progressed, v1::Job& last) {
     v1::WatchJobRequest request;
     request.set_name(name);
     grpc::ClientContext context;
@@ -59,6 +59,7 @@ grpc::Status follow(Connection& connection, const std::string& name, Progress& p
     v1::Job job;
     while (reader->Read(&job)) {
         last = job;
+        if (progressed) progressed(job);
         if (connection.options.json) {
             std::puts(json_line(job).c_str());
             std::fflush(stdout);
@@ -74,7 +75,7 @@ grpc::Status follow(Connection& connection, const std::string& name, Progress& p
 void catch_interrupt() { std::signal(SIGINT, on_interrupt); }
 bool interrupted() { return interrupt_seen; }
 
-int run_watch(Connection& connection, const std::string& argument) {
+int run_watch(Connection& connection, const std::string& argument, const std::function<void(const v1::Job&)>& progressed) {
     catch_interrupt();
     const std::string name = job_resource(argument), number = name.substr(name.find('/') + 1);
     Progress progress;
@@ -83,7 +84,7 @@ int run_watch(Connection& connection, const std::string& argument) {
     bool told = false;
     for (;;) {
         const std::string state_before = job.SerializeAsString();
-        const grpc::Status status = follow(connection, name, progress, job);
+        const grpc::Status status = follow(connection, name, progress, progressed, job);
         progress.clear();
         if (interrupted()) {
             std::fprintf(stderr, "bake: job %s goes on without this client; come back with: bake watch %s\n", number.c_str(), number.c_str());

@@ -54,6 +54,7 @@ tl::expected<Connection, std::string> connect(const ConnectionOptions& options) 
     connection.maps = v1::Maps::NewStub(channel);
     connection.jobs = v1::Jobs::NewStub(channel);
     connection.sectors = v1::Sectors::NewStub(channel);
+    connection.cache = v1::Cache::NewStub(channel);
     return connection;
 }
 

@@ -1,7 +1,8 @@
-// The way to the daemon: one channel, the four services, statuses told as sentences.
+// The way to the daemon: one channel, the five services, statuses told as sentences.
 #pragma once
 
 #include "drtv/v1/blob.grpc.pb.h"
+#include "drtv/v1/cache.grpc.pb.h"
 #include "drtv/v1/job.grpc.pb.h"
 #include "drtv/v1/map.grpc.pb.h"
 #include "drtv/v1/sector.grpc.pb.h"
@@ -25,6 +26,7 @@ struct Connection {
     std::unique_ptr<v1::Maps::Stub> maps;
     std::unique_ptr<v1::Jobs::Stub> jobs;
     std::unique_ptr<v1::Sectors::Stub> sectors;
+    std::unique_ptr<v1::Cache::Stub> cache;
 
     // "cannot reach bakerd at 127.0.0.1:7447: is it running?" or the server's own sentence.
     [[nodiscard]] std::string sentence(const grpc::Status& status) const;

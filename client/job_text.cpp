@@ -28,6 +28,8 @@ std::string json_line(const v1::Job& job) {
                                    {"sectors_done", job.sectors_done()},
                                    {"sectors_failed", job.sectors_failed()},
                                    {"sectors_cached", job.sectors_cached()},
+                                   {"sectors_near", job.sectors_near()},
+                                   {"largest_bound", job.largest_bound()},
                                    {"probes", job.probes()},
                                    {"rays", job.rays()},
                                    {"rays_per_second", job.rays_per_second()},
@@ -52,9 +54,16 @@ std::string duration_text(double seconds) {
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
+std::string reused_text(const v1::Job& job) {
+    std::string text;
+    if (job.sectors_cached() > 0) text += fmt::format(", {} of them from the cache", with_thousands(job.sectors_cached()));
+    if (job.sectors_near() > 0) text += fmt::format(", {} nearly the same (at most {:.2g} % off)", with_thousands(job.sectors_near()), job.largest_bound() * 100);
+    return text;
+}
+
 std::string one_line(const v1::Job& job) {
     std::string text = fmt::format("job {} {}: {} of {} sectors done", job_number(job), state_name(job.state()), with_thousands(job.sectors_done()), with_thousands(job.sectors_total()));
-    if (job.sectors_cached() > 0) text += fmt::format(", {} of them from the cache", with_thousands(job.sectors_cached()));
+    text += reused_text(job);
     if (job.sectors_failed() > 0) text += fmt::format(", {} failed", with_thousands(job.sectors_failed()));
     text += fmt::format(", {} probes", with_thousands(job.probes()));
     if (job.end_time_seconds() > 0) text += fmt::format(", {}", duration_text(static_cast<double>(job.end_time_seconds() - job.create_time_seconds())));

@@ -22,10 +22,16 @@ int main(int argc, char** argv) {
 
     SubmitOptions submit;
     CLI::App* submit_command = app.add_subcommand("submit", "Upload a map and bake it");
-    submit_command->add_option("MAP", submit.maps, "glTF files (.gltf, .glb), or folders of them")->required();
-    submit_command->add_option("--region", submit.region, "X0,Y0,X1,Y1 in world metres: only the sectors it touches");
-    submit_command->add_option("--preset", submit.preset, "draft, console or pc")->capture_default_str();
-    submit_command->add_option("--set", submit.settings, "key=value: rays, bounces, reach (m), min_distance (m)")->allow_extra_args(false);
+    std::string picture;
+    CLI::App* plan_command = app.add_subcommand("plan", "Say what would be baked, and why, without baking");
+    for (CLI::App* command : {submit_command, plan_command}) {
+        command->add_option("MAP", submit.maps, "glTF files (.gltf, .glb), or folders of them")->required();
+        command->add_option("--region", submit.region, "X0,Y0,X1,Y1 in world metres: only the sectors it touches");
+        command->add_option("--preset", submit.preset, "draft, console or pc")->capture_default_str();
+        command->add_option("--set", submit.settings, "key=value: rays, bounces, reach (m), min_distance (m), error, tolerance, lprt, lprt_bounces, lprt_rays")->allow_extra_args(false);
+        command->add_flag("--exact", submit.exact, "Bake whatever could differ in one bit: tolerance=0");
+    }
+    plan_command->add_option("--png", picture, "Draw the plan from above to this file");
     submit_command->add_flag("--wait", submit.wait, "Show progress until the job ends");
     submit_command->add_option("--pull", submit.pull_folder, "Wait, then write the sector files to this folder");
 
@@ -35,6 +41,9 @@ int main(int argc, char** argv) {
     CLI::App* watch_command = app.add_subcommand("watch", "Show a job's progress until it ends");
     CLI::App* cancel_command = app.add_subcommand("cancel", "Stop a job; what is done stays");
     CLI::App* pull_command = app.add_subcommand("pull", "Write a job's finished sector files to a folder");
+    bool clear = false;
+    CLI::App* cache_command = app.add_subcommand("cache", "Size and hit rate of the results that bakerd keeps");
+    cache_command->add_flag("--clear", clear, "Remove all that no running job needs");
     for (CLI::App* command : {status_command, watch_command, cancel_command, pull_command}) command->add_option("JOB", job, "Number of the job")->required();
     pull_command->add_option("--out", folder, "Folder for the files; made when missing")->required();
     for (CLI::App* command : app.get_subcommands({})) command->fallthrough();
@@ -50,6 +59,8 @@ int main(int argc, char** argv) {
     auto connection = connect(options);
     if (!connection) return complain(connection.error());
     if (*submit_command) return run_submit(*connection, submit);
+    if (*plan_command) return run_plan(*connection, submit, picture);
+    if (*cache_command) return run_cache(*connection, clear);
     if (*status_command) return run_status(*connection, job);
     if (*watch_command) return run_watch(*connection, job);
     if (*cancel_command) return run_cancel(*connection, job);

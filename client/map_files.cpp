@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <fcntl.h>
 #include <openssl/evp.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -168,6 +170,24 @@ tl::expected<LocalMap, std::string> collect_map(const std::vector<std::string>& 
         map.files.push_back({path.string(), path.lexically_relative(folder).generic_string(), *digest, static_cast<std::int64_t>(fs::file_size(path, code))});
     }
     return map;
+}
+
+tl::expected<void, std::string> write_whole(const std::string& path, const std::string& bytes) {
+    const std::string temporary = fmt::format("{}.part{}", path, ::getpid());
+    const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    bool written = fd >= 0;
+    for (std::size_t at = 0; written && at < bytes.size();) {
+        const ssize_t n = ::write(fd, bytes.data() + at, bytes.size() - at);
+        if (n < 0 && errno == EINTR) continue;
+        written = n > 0;
+        if (n > 0) at += static_cast<std::size_t>(n);
+    }
+    const int write_error = errno;
+    if (fd >= 0 && ::close(fd) != 0) written = false;
+    if (written && ::rename(temporary.c_str(), path.c_str()) == 0) return {};
+    const int error = written || fd < 0 ? errno : write_error;
+    if (fd >= 0) ::unlink(temporary.c_str());
+    return tl::unexpected(fmt::format("cannot write {}: {}", path, std::strerror(error)));
 }
 
 }  // namespace drtv::client

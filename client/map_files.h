@@ -29,4 +29,7 @@ struct LocalMap {
 [[nodiscard]] tl::expected<std::string, std::string> sha256_of_file(const std::string& path);
 [[nodiscard]] std::string sha256_of_text(const std::string& bytes);
 
+// Writes a file: it appears whole or not at all.
+[[nodiscard]] tl::expected<void, std::string> write_whole(const std::string& path, const std::string& bytes);
+
 }  // namespace drtv::client

@@ -28,7 +28,7 @@ ARROWS = {
 # Foreign headers -> the only rooms that may include them.
 FOREIGN = {
     r"tiny_gltf\.h": {"bakerd/map"},
-    r"stb/": {"bakerd/map"},
+    r"stb/": {"bakerd/map", "client"},
     r"embree3/": {"bakerd/trace"},
     r"CGAL/": {"placement"},
     r"glm/": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake"},

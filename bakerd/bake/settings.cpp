@@ -53,13 +53,14 @@ tl::expected<void, std::string> set(Settings& settings, std::string_view key, st
     if (key == "error") return assign(settings.error, parse<float>(key, value, 0, 1));
     if (key == "lprt_bounces") return assign(settings.local_bounces, parse<std::uint32_t>(key, value, 1, 4));
     if (key == "lprt_rays") return assign(settings.local_rays, parse<std::uint32_t>(key, value, 16, 4096));
+    if (key == "tolerance") return assign(settings.tolerance, parse<float>(key, value, 0, 0.0625f));
     if (key == "lprt") {
         const auto parsed = parse<std::uint32_t>(key, value, 0, 1);
         if (!parsed) return tl::unexpected(parsed.error());
         settings.local_transfer = *parsed == 1;
         return {};
     }
-    return tl::unexpected(fmt::format("the setting '{}' is unknown: there are rays, bounces, reach, min_distance, error, lprt, lprt_bounces and lprt_rays", key));
+    return tl::unexpected(fmt::format("the setting '{}' is unknown: there are rays, bounces, reach, min_distance, error, lprt, lprt_bounces, lprt_rays and tolerance", key));
 }
 
 map::Digest settings_key(const Settings& settings) {

@@ -23,6 +23,8 @@ struct Settings {
     bool local_transfer = false;
     std::uint32_t local_bounces = 2;  // surface bounces of local transfer, 1 to 4
     std::uint32_t local_rays = 1024;  // traced from each of its sources, 16 to 4096
+    // The change of any coefficient, as a share of its range, up to which an older result may stand in (assessment.h); 0 to 0.0625, 0: none. Not of the bake itself.
+    float tolerance = 1 / 512.0f;
 
     bool operator==(const Settings&) const = default;
 };
@@ -30,11 +32,11 @@ struct Settings {
 // "draft", "console" or "pc"; a sentence for any other name.
 [[nodiscard]] tl::expected<Settings, std::string> preset(std::string_view name);
 
-// Sets `rays`, `bounces`, `reach`, `min_distance`, `error`, `lprt`, `lprt_bounces` or `lprt_rays` from text; a sentence for an unknown key or a value out of
+// Sets `rays`, `bounces`, `reach`, `min_distance`, `error`, `lprt`, `lprt_bounces`, `lprt_rays` or `tolerance` from text; a sentence for an unknown key or a value out of
 // range, and then `settings` is as before.
 [[nodiscard]] tl::expected<void, std::string> set(Settings& settings, std::string_view key, std::string_view value);
 
-// Digest over settings, format version, baker version and ISA class: all but the map and the sector.
+// Digest over settings that a file's bytes follow from, format version, baker version and ISA class: all but the map and the sector.
 [[nodiscard]] map::Digest settings_key(const Settings& settings);
 
 }  // namespace drtv::bake

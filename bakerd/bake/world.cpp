@@ -10,8 +10,8 @@
 namespace drtv::bake {
 namespace {
 
-// Sectors come tile by tile; two tiles are at work while one ends and the next begins.
-constexpr std::size_t kept_scenes = 2;
+// Sectors come tile by tile; two tiles are at work while one ends and the next begins, and up to four around a change.
+constexpr std::size_t kept_scenes = 4;
 
 // Two rows of tiles side by side; a placement is some kilobytes.
 constexpr std::size_t kept_placements = 1024;
@@ -21,15 +21,15 @@ constexpr std::size_t kept_samples = 4;
 
 }  // namespace
 
-World::World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map)
-    : geometry_(std::move(device), map), lights_(map), scenes_(kept_scenes), placements_(kept_placements), samples_(kept_samples) {}
+World::World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map, std::shared_ptr<trace::MeshShelf> shelf)
+    : geometry_(std::move(device), map, std::move(shelf)), lights_(map), scenes_(kept_scenes), placements_(kept_placements), samples_(kept_samples) {}
 
-tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map) {
+tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map, std::shared_ptr<trace::MeshShelf> shelf) {
     constexpr std::size_t most_emissive = std::size_t{1} << 23;  // triangles: half a gigabyte
     if (const std::size_t count = emissive_triangles(*map); count > most_emissive) {
         return tl::unexpected(fmt::format("the map's emissive surfaces have {} triangles, instances counted, over the limit of {}", count, most_emissive));
     }
-    std::shared_ptr<World> world(new World(std::move(device), std::move(map)));
+    std::shared_ptr<World> world(new World(std::move(device), std::move(map), std::move(shelf)));
     auto sectors = map::sectors_with_ground(world->map());
     if (!sectors) return tl::unexpected(sectors.error());
     world->sectors_ = std::move(*sectors);

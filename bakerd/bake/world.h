@@ -24,8 +24,9 @@ using Placed = tl::expected<PlacedSector, std::string>;
 
 class World {
   public:
-    // Fails with a sentence when the map is too large or a `no_probes` or `interior` volume is not closed.
-    [[nodiscard]] static tl::expected<std::shared_ptr<World>, std::string> open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map);
+    // With a shelf, the geometry of meshes that a map before had is used again. Fails with a sentence when the map is too large or a `no_probes` or `interior` volume is not closed.
+    [[nodiscard]] static tl::expected<std::shared_ptr<World>, std::string> open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map,
+                                                                                  std::shared_ptr<trace::MeshShelf> shelf = nullptr);
 
     [[nodiscard]] const map::Map& map() const { return *geometry_.map(); }
     [[nodiscard]] const StaticLights& lights() const { return lights_; }
@@ -60,7 +61,7 @@ class World {
         std::uint32_t count, dimensions;
         bool operator==(const SampleKey&) const = default;
     };
-    World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map);
+    World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map, std::shared_ptr<trace::MeshShelf> shelf);
 
     trace::MapGeometry geometry_;
     const StaticLights lights_;

@@ -143,6 +143,8 @@ Result<std::vector<std::uint8_t>> BlobStore::get(const Digest& digest) {
     return bytes;
 }
 
+void BlobStore::remove(const Digest& digest) const { ::unlink(path_of(digest).c_str()); }
+
 std::int64_t BlobStore::received_bytes(const Digest& digest) const {
     struct stat status {};
     return ::stat(part_path(digest).c_str(), &status) == 0 ? static_cast<std::int64_t>(status.st_size) : 0;

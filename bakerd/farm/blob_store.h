@@ -34,6 +34,9 @@ class BlobStore {
 
     [[nodiscard]] bool has(const Digest& digest) const;
 
+    // Nothing happens when there is none.
+    void remove(const Digest& digest) const;
+
     // Bytes of an unfinished upload, 0 if there is none.
     [[nodiscard]] std::int64_t received_bytes(const Digest& digest) const;
 

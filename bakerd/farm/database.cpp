@@ -9,25 +9,44 @@
 namespace drtv::farm {
 namespace {
 
-constexpr int schema_version = 2;
+constexpr int schema_version = 3;
 
 constexpr const char* schema = R"sql(
 CREATE TABLE map (manifest TEXT PRIMARY KEY, summary TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE job (
   id INTEGER PRIMARY KEY AUTOINCREMENT, request_id TEXT UNIQUE, manifest TEXT NOT NULL, preset TEXT NOT NULL,
   settings TEXT NOT NULL, overrides TEXT NOT NULL, region TEXT NOT NULL, state INTEGER NOT NULL, error TEXT NOT NULL,
-  sectors_cached INTEGER NOT NULL, created INTEGER NOT NULL, ended INTEGER NOT NULL);
+  sectors_cached INTEGER NOT NULL, created INTEGER NOT NULL, ended INTEGER NOT NULL, sectors_near INTEGER NOT NULL DEFAULT 0,
+  largest_bound REAL NOT NULL DEFAULT 0);
 CREATE TABLE task (
   id INTEGER PRIMARY KEY, key TEXT UNIQUE NOT NULL, manifest TEXT NOT NULL, i INTEGER NOT NULL, j INTEGER NOT NULL,
   settings TEXT NOT NULL, state INTEGER NOT NULL, failed_attempts INTEGER NOT NULL, result TEXT NOT NULL,
-  size INTEGER NOT NULL, probes INTEGER NOT NULL, rays INTEGER NOT NULL, error TEXT NOT NULL, warnings TEXT NOT NULL DEFAULT '');
+  size INTEGER NOT NULL, probes INTEGER NOT NULL, rays INTEGER NOT NULL, error TEXT NOT NULL, warnings TEXT NOT NULL DEFAULT '',
+  bound REAL NOT NULL DEFAULT 0);
 CREATE TABLE job_task (job INTEGER NOT NULL, task INTEGER NOT NULL, PRIMARY KEY (job, task)) WITHOUT ROWID;
 )sql";
 
-constexpr const char* schema_2_from_1 = "ALTER TABLE task ADD COLUMN warnings TEXT NOT NULL DEFAULT ''";
+constexpr const char* result_schema = R"sql(
+CREATE TABLE result (
+  id INTEGER PRIMARY KEY, i INTEGER NOT NULL, j INTEGER NOT NULL, settings_key TEXT NOT NULL, file TEXT NOT NULL, size INTEGER NOT NULL,
+  probes INTEGER NOT NULL, rays INTEGER NOT NULL, warnings TEXT NOT NULL, footprint TEXT NOT NULL, inventory TEXT NOT NULL,
+  footprint_size INTEGER NOT NULL, seconds REAL NOT NULL, used INTEGER NOT NULL);
+CREATE INDEX result_of_sector ON result (i, j, settings_key, used);
+CREATE INDEX result_by_use ON result (used);
+CREATE INDEX result_of_file ON result (file);
+CREATE INDEX result_of_footprint ON result (footprint);
+CREATE INDEX result_of_inventory ON result (inventory);
+CREATE TABLE counter (name TEXT PRIMARY KEY, value INTEGER NOT NULL) WITHOUT ROWID;
+INSERT INTO counter VALUES ('hits', 0), ('near_hits', 0), ('baked', 0), ('uses', 0);
+)sql";
 
-constexpr const char* task_columns = "id, key, manifest, i, j, settings, state, failed_attempts, result, size, probes, rays, error, warnings";
-constexpr const char* job_columns = "id, request_id, manifest, preset, settings, overrides, region, state, error, sectors_cached, created, ended";
+constexpr const char* schema_2_from_1 = "ALTER TABLE task ADD COLUMN warnings TEXT NOT NULL DEFAULT '';";
+constexpr const char* schema_3_from_2 =
+    "ALTER TABLE task ADD COLUMN bound REAL NOT NULL DEFAULT 0; ALTER TABLE job ADD COLUMN sectors_near INTEGER NOT NULL DEFAULT 0; ALTER TABLE job ADD COLUMN largest_bound REAL NOT NULL DEFAULT 0;";
+
+constexpr const char* task_columns = "id, key, manifest, i, j, settings, state, failed_attempts, result, size, probes, rays, error, warnings, bound";
+constexpr const char* job_columns = "id, request_id, manifest, preset, settings, overrides, region, state, error, sectors_cached, created, ended, sectors_near, largest_bound";
+constexpr const char* result_columns = "id, i, j, settings_key, file, size, probes, rays, warnings, footprint, inventory, footprint_size, seconds";
 
 // A list of sentences in one column: a line each, for no sentence has a line's end.
 std::string joined(const std::vector<std::string>& sentences) {
@@ -62,6 +81,10 @@ class Database::Statement {
         sqlite3_bind_int64(statement_, ++bound_, value);
         return *this;
     }
+    Statement& bind_real(double value) {
+        sqlite3_bind_double(statement_, ++bound_, value);
+        return *this;
+    }
     Statement& bind(const std::string& value) {
         sqlite3_bind_text(statement_, ++bound_, value.c_str(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
         return *this;
@@ -85,6 +108,7 @@ class Database::Statement {
         return {};
     }
     std::int64_t integer() { return sqlite3_column_int64(statement_, read_++); }
+    double real() { return sqlite3_column_double(statement_, read_++); }
     std::string text() {
         const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, read_));
         const int size = sqlite3_column_bytes(statement_, read_++);
@@ -107,7 +131,34 @@ class Database::Statement {
         row.result.rays = integer();
         row.error = text();
         row.result.warnings = split(text());
+        row.bound = static_cast<float>(real());
         return row;
+    }
+    ResultRow result() {
+        ResultRow row;
+        row.id = integer();
+        row.sector.i = static_cast<std::int32_t>(integer());
+        row.sector.j = static_cast<std::int32_t>(integer());
+        row.settings_key = stored_digest(text());
+        row.result.result = stored_digest(text());
+        row.result.size_bytes = integer();
+        row.result.probes = integer();
+        row.result.rays = integer();
+        row.result.warnings = split(text());
+        row.result.footprint = stored_digest(text());
+        row.result.inventory = stored_digest(text());
+        row.result.footprint_bytes = integer();
+        row.result.seconds = real();
+        return row;
+    }
+    Result<std::vector<ResultRow>> all_results() {
+        std::vector<ResultRow> rows;
+        for (;;) {
+            const auto row = step();
+            if (!row) return tl::unexpected(row.error());
+            if (!*row) return rows;
+            rows.push_back(result());
+        }
     }
     Result<std::optional<TaskRow>> one_task() {
         const auto row = step();
@@ -118,7 +169,7 @@ class Database::Statement {
     void bind_task(const TaskRow& row) {
         bind(to_hex(row.key)).bind(to_hex(row.manifest)).bind(row.sector.i).bind(row.sector.j).bind(encode_settings(row.settings));
         bind(static_cast<std::int64_t>(row.state)).bind(row.failed_attempts).bind(to_hex(row.result.result));
-        bind(row.result.size_bytes).bind(row.result.probes).bind(row.result.rays).bind(row.error).bind(joined(row.result.warnings));
+        bind(row.result.size_bytes).bind(row.result.probes).bind(row.result.rays).bind(row.error).bind(joined(row.result.warnings)).bind_real(row.bound);
     }
 
   private:
@@ -155,7 +206,10 @@ Result<std::unique_ptr<Database>> Database::open(const std::string& path) {
     if (version > schema_version) return fail(ErrorCode::failed_precondition, fmt::format("{} was written by a newer bakerd (schema {}, this one knows {})", path, version, schema_version));
     if (version < schema_version) {
         const auto created = database->transaction([&]() -> Result<void> {
-            if (auto done = database->execute(version == 0 ? schema : schema_2_from_1); !done) return done;
+            std::string steps = version == 0 ? schema : "";
+            if (version == 1) steps += schema_2_from_1;
+            if (version == 1 || version == 2) steps += schema_3_from_2;
+            if (auto done = database->execute((steps + result_schema).c_str()); !done) return done;
             return database->execute(fmt::format("PRAGMA user_version={}", schema_version).c_str());
         });
         if (!created) return tl::unexpected(created.error());
@@ -189,11 +243,12 @@ Result<std::optional<InspectAnswer>> Database::map(const Digest& manifest) {
 }
 
 Result<void> Database::insert_job(JobRow& job) {
-    Statement statement(*this, fmt::format("INSERT INTO job ({}) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", job_columns));
+    Statement statement(*this, fmt::format("INSERT INTO job ({}) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", job_columns));
     if (job.request_id.empty()) statement.bind_null();
     else statement.bind(job.request_id);
     statement.bind(to_hex(job.manifest)).bind(job.preset).bind(encode_settings(job.settings)).bind(job.overrides).bind(job.region);
     statement.bind(static_cast<std::int64_t>(job.state)).bind(job.error).bind(job.sectors_cached).bind(job.created_seconds).bind(job.ended_seconds);
+    statement.bind(job.sectors_near).bind_real(job.largest_bound);
     if (auto done = statement.run(); !done) return done;
     job.id = sqlite3_last_insert_rowid(handle_);
     return {};
@@ -224,6 +279,8 @@ Result<std::vector<JobRow>> Database::jobs() {
         job.sectors_cached = statement.integer();
         job.created_seconds = statement.integer();
         job.ended_seconds = statement.integer();
+        job.sectors_near = statement.integer();
+        job.largest_bound = static_cast<float>(statement.real());
         rows.push_back(std::move(job));
     }
 }
@@ -277,7 +334,7 @@ Result<std::vector<std::string>> Database::job_warnings(std::int64_t job, std::s
 }
 
 Result<void> Database::insert_task(TaskRow& task) {
-    Statement statement(*this, fmt::format("INSERT INTO task ({}) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", task_columns));
+    Statement statement(*this, fmt::format("INSERT INTO task ({}) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", task_columns));
     statement.bind_task(task);
     if (auto done = statement.run(); !done) return done;
     task.id = sqlite3_last_insert_rowid(handle_);
@@ -286,7 +343,7 @@ Result<void> Database::insert_task(TaskRow& task) {
 
 Result<void> Database::update_task(const TaskRow& task) {
     Statement statement(*this,
-                        "UPDATE task SET key = ?, manifest = ?, i = ?, j = ?, settings = ?, state = ?, failed_attempts = ?, result = ?, size = ?, probes = ?, rays = ?, error = ?, warnings = ? "
+                        "UPDATE task SET key = ?, manifest = ?, i = ?, j = ?, settings = ?, state = ?, failed_attempts = ?, result = ?, size = ?, probes = ?, rays = ?, error = ?, warnings = ?, bound = ? "
                         "WHERE id = ?");
     statement.bind_task(task);
     return statement.bind(task.id).run();
@@ -295,6 +352,74 @@ Result<void> Database::update_task(const TaskRow& task) {
 Result<std::optional<TaskRow>> Database::task_by_key(const Digest& key) {
     Statement statement(*this, fmt::format("SELECT {} FROM task WHERE key = ?", task_columns));
     return statement.bind(to_hex(key)).one_task();
+}
+
+Result<void> Database::insert_result(ResultRow& row) {
+    if (auto done = execute("UPDATE counter SET value = value + 1 WHERE name = 'uses'"); !done) return done;
+    Statement statement(*this, fmt::format("INSERT INTO result ({}, used) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, (SELECT value FROM counter WHERE name = 'uses'))", result_columns));
+    statement.bind(row.sector.i).bind(row.sector.j).bind(to_hex(row.settings_key)).bind(to_hex(row.result.result)).bind(row.result.size_bytes).bind(row.result.probes).bind(row.result.rays);
+    statement.bind(joined(row.result.warnings)).bind(to_hex(row.result.footprint)).bind(to_hex(row.result.inventory)).bind(row.result.footprint_bytes).bind_real(row.result.seconds);
+    if (auto done = statement.run(); !done) return done;
+    row.id = sqlite3_last_insert_rowid(handle_);
+    return {};
+}
+
+Result<std::vector<ResultRow>> Database::results(map::SectorCoordinate sector, const Digest& settings_key, std::size_t most) {
+    Statement statement(*this, fmt::format("SELECT {} FROM result WHERE i = ? AND j = ? AND settings_key = ? ORDER BY used DESC LIMIT ?", result_columns));
+    return statement.bind(sector.i).bind(sector.j).bind(to_hex(settings_key)).bind(static_cast<std::int64_t>(most)).all_results();
+}
+
+Result<void> Database::mark_used(map::SectorCoordinate sector, const Digest& file) {
+    if (auto done = execute("UPDATE counter SET value = value + 1 WHERE name = 'uses'"); !done) return done;
+    Statement statement(*this, "UPDATE result SET used = (SELECT value FROM counter WHERE name = 'uses') WHERE file = ? AND i = ? AND j = ?");
+    return statement.bind(to_hex(file)).bind(sector.i).bind(sector.j).run();
+}
+
+Result<std::vector<ResultRow>> Database::idle_results(std::size_t most) {
+    Statement statement(*this, fmt::format("SELECT {} FROM result WHERE file NOT IN (SELECT task.result FROM task JOIN job_task ON job_task.task = task.id JOIN job ON job.id = job_task.job WHERE job.state = 0) "
+                                           "ORDER BY used LIMIT ?",
+                                           result_columns));
+    return statement.bind(static_cast<std::int64_t>(most)).all_results();
+}
+
+Result<void> Database::remove_result(std::int64_t id) {
+    Statement statement(*this, "DELETE FROM result WHERE id = ?");
+    return statement.bind(id).run();
+}
+
+Result<bool> Database::is_needed(const Digest& blob) {
+    Statement statement(*this,
+                        "SELECT EXISTS (SELECT 1 FROM result WHERE file = ?1) OR EXISTS (SELECT 1 FROM result WHERE footprint = ?1) OR EXISTS (SELECT 1 FROM result WHERE inventory = ?1) OR EXISTS "
+                        "(SELECT 1 FROM job JOIN job_task ON job.id = job_task.job JOIN task ON job_task.task = task.id WHERE job.state = 0 AND task.result = ?1)");
+    const auto row = statement.bind(to_hex(blob)).step();
+    if (!row) return tl::unexpected(row.error());
+    return statement.integer() != 0;
+}
+
+Result<double> Database::mean_seconds(const Digest& settings_key) {
+    Statement statement(*this, "SELECT coalesce((SELECT avg(seconds) FROM result WHERE settings_key = ?), (SELECT avg(seconds) FROM result), 0)");
+    const auto row = statement.bind(to_hex(settings_key)).step();
+    if (!row) return tl::unexpected(row.error());
+    return statement.real();
+}
+
+Result<void> Database::count(std::int64_t hits, std::int64_t near_hits, std::int64_t baked) {
+    Statement statement(*this, "UPDATE counter SET value = value + CASE name WHEN 'hits' THEN ? WHEN 'near_hits' THEN ? WHEN 'baked' THEN ? ELSE 0 END");
+    return statement.bind(hits).bind(near_hits).bind(baked).run();
+}
+
+Result<CacheCounts> Database::cache_counts() {
+    Statement statement(*this, "SELECT count(*), total(size + footprint_size), (SELECT value FROM counter WHERE name = 'hits'), (SELECT value FROM counter WHERE name = 'near_hits'), "
+                               "(SELECT value FROM counter WHERE name = 'baked') FROM result");
+    const auto row = statement.step();
+    if (!row) return tl::unexpected(row.error());
+    CacheCounts counts;
+    counts.results = statement.integer();
+    counts.bytes = statement.integer();
+    counts.hits = statement.integer();
+    counts.near_hits = statement.integer();
+    counts.baked = statement.integer();
+    return counts;
 }
 
 }  // namespace drtv::farm

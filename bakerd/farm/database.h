@@ -34,8 +34,23 @@ struct TaskRow {
     bake::Settings settings;
     TaskState state = TaskState::pending;
     int failed_attempts = 0;
-    BakeAnswer result;  // when done
+    BakeAnswer result;  // when done; without the records it rests on, which stand in ResultRow
+    float bound = 0;    // when done with a result of another map: how far it may be off (assessment.h)
     std::string error;  // when failed
+};
+
+// A baked sector, kept for this map and any other for which it still holds.
+struct ResultRow {
+    std::int64_t id = 0;
+    map::SectorCoordinate sector;
+    Digest settings_key;
+    BakeAnswer result;
+};
+
+// What the cache has done since the database was made.
+struct CacheCounts {
+    std::int64_t results = 0, bytes = 0;               // kept now: files and footprints
+    std::int64_t hits = 0, near_hits = 0, baked = 0;   // sectors of all jobs
 };
 
 struct JobRow {
@@ -47,7 +62,8 @@ struct JobRow {
     std::string overrides, region;  // as asked, JSON
     JobState state = JobState::running;
     std::string error;
-    std::int64_t sectors_cached = 0;
+    std::int64_t sectors_cached = 0, sectors_near = 0;  // hits and near hits
+    float largest_bound = 0;                             // of the near hits
     std::int64_t created_seconds = 0, ended_seconds = 0;  // Unix time
 };
 
@@ -85,6 +101,22 @@ class Database {
     [[nodiscard]] Result<void> insert_task(TaskRow& task);
     [[nodiscard]] Result<void> update_task(const TaskRow& task);
     [[nodiscard]] Result<std::optional<TaskRow>> task_by_key(const Digest& key);
+
+    // Sets `row.id`. It counts as the one used last.
+    [[nodiscard]] Result<void> insert_result(ResultRow& row);
+    // Of one sector, the one used last first.
+    [[nodiscard]] Result<std::vector<ResultRow>> results(map::SectorCoordinate sector, const Digest& settings_key, std::size_t most);
+    // Of the result with that file.
+    [[nodiscard]] Result<void> mark_used(map::SectorCoordinate sector, const Digest& file);
+    // Those used longest ago, without any that a running job holds.
+    [[nodiscard]] Result<std::vector<ResultRow>> idle_results(std::size_t most);
+    [[nodiscard]] Result<void> remove_result(std::int64_t id);
+    // Whether a result or a running job has the blob as its file, footprint or inventory.
+    [[nodiscard]] Result<bool> is_needed(const Digest& blob);
+    // Mean of what sectors took with these settings, or with any when there are none; 0 without results.
+    [[nodiscard]] Result<double> mean_seconds(const Digest& settings_key);
+    [[nodiscard]] Result<void> count(std::int64_t hits, std::int64_t near_hits, std::int64_t baked);
+    [[nodiscard]] Result<CacheCounts> cache_counts();
 
   private:
     class Statement;

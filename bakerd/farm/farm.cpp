@@ -10,17 +10,6 @@ namespace {
 
 std::int64_t unix_seconds() { return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
-// What a sector's file depends on, as far as is known before it is baked.
-Digest task_key(const Digest& content, const Digest& settings_key, map::SectorCoordinate sector) {
-    map::Hasher hasher;
-    hasher.add_sized(std::string_view("drtv task"));
-    hasher.add(content);
-    hasher.add(settings_key);
-    hasher.add(sector.i);
-    hasher.add(sector.j);
-    return hasher.finish();
-}
-
 }  // namespace
 
 Farm::Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<BlobStore> blobs, std::unique_ptr<Database> database)
@@ -52,6 +41,9 @@ void Farm::stop(std::chrono::milliseconds patience) {
 
 Result<void> Farm::load() {
     const std::lock_guard lock(mutex_);
+    const auto counts = database_->cache_counts();
+    if (!counts) return tl::unexpected(counts.error());
+    cache_bytes_ = counts->bytes;
     auto rows = database_->jobs();
     if (!rows) return tl::unexpected(rows.error());
     for (JobRow& row : *rows) {
@@ -123,9 +115,10 @@ Result<MapView> Farm::create_map(Manifest given) {
         const std::lock_guard lock(mutex_);
         auto known = database_->map(*id);
         if (!known) return tl::unexpected(known.error());
-        if (*known) return MapView{*id, std::move(*manifest), std::move(**known)};
+        // One from before there were inventories is looked at again.
+        if (*known && (*known)->inventory != Digest{}) return MapView{*id, std::move(*manifest), std::move(**known)};
     }
-    const Outcome outcome = executor_->inspect(*id).get();
+    const Outcome outcome = executor_->ask(InspectRequest{0, *id}).get();
     if (const auto* failure = std::get_if<FailureAnswer>(&outcome)) {
         return fail(failure->may_retry ? ErrorCode::unavailable : ErrorCode::invalid_argument, failure->sentence);
     }
@@ -152,35 +145,76 @@ Result<MapView> Farm::get_map(const Digest& id) {
     return MapView{id, std::move(*manifest), std::move(*summary)};
 }
 
-Result<JobView> Farm::create_job(const JobRequest& request) {
+Result<Farm::Planned> Farm::make_plan(const JobRequest& request) {
     const auto settings = settings_of(request);
     if (!settings) return tl::unexpected(settings.error());
-    if (request.request_id.size() > 64) return fail(ErrorCode::invalid_argument, "the request id is longer than 64 bytes");
-    std::unique_lock lock(mutex_);
-    if (!request.request_id.empty()) {
-        const auto same = std::find_if(jobs_.begin(), jobs_.end(), [&](const auto& entry) { return entry.second.row.request_id == request.request_id; });
-        if (same != jobs_.end()) return view_of(same->second);
+    Planned planned{*settings, {}, {}};
+    {
+        const std::lock_guard lock(mutex_);
+        auto map = database_->map(request.manifest);
+        if (!map) return tl::unexpected(map.error());
+        if (!*map) return fail(ErrorCode::not_found, fmt::format("there is no map {}", to_hex(request.manifest)));
+        planned.map = std::move(**map);
+        const auto sectors = sectors_of(request.region, planned.map.sectors);
+        if (!sectors) return tl::unexpected(sectors.error());
+        auto plan = look_up(*database_, *blobs_, planned.map, *settings, *sectors);
+        if (!plan) return tl::unexpected(plan.error());
+        planned.plan = std::move(*plan);
     }
-    auto map = database_->map(request.manifest);
-    if (!map) return tl::unexpected(map.error());
-    if (!*map) return fail(ErrorCode::not_found, fmt::format("there is no map {}", to_hex(request.manifest)));
-    const auto sectors = sectors_of(request.region, (*map)->sectors);
-    if (!sectors) return tl::unexpected(sectors.error());
+    const auto question = question_of(planned.plan, request.manifest, *settings);
+    if (!question) return planned;
+    const Outcome outcome = executor_->ask(*question).get();
+    if (const auto* answer = std::get_if<AssessAnswer>(&outcome)) {
+        apply(*answer, planned.plan);
+    } else {
+        // Then everything is baked that is not known for certain.
+        const auto* failure = std::get_if<FailureAnswer>(&outcome);
+        planned.plan.warnings.push_back(fmt::format("older results could not be looked at: {}", failure != nullptr ? failure->sentence : "the worker gave an answer to another question"));
+    }
+    for (const std::string& warning : planned.plan.warnings) spdlog::warn("{}", warning);
+    return planned;
+}
+
+Result<PlanView> Farm::plan_job(const JobRequest& request) {
+    auto planned = make_plan(request);
+    if (!planned) return tl::unexpected(planned.error());
+    PlanView view{std::move(planned->plan), 0};
+    for (const PlannedSector& sector : view.plan.sectors) {
+        if (sector.verdict == bake::Verdict::rebake) view.seconds += sector.seconds;
+    }
+    view.seconds /= static_cast<double>(std::clamp<std::int64_t>(view.plan.count(bake::Verdict::rebake), 1, options_.threads));
+    return view;
+}
+
+Result<JobView> Farm::create_job(const JobRequest& request) {
+    if (request.request_id.size() > 64) return fail(ErrorCode::invalid_argument, "the request id is longer than 64 bytes");
+    const auto same_request = [&] { return std::ranges::find_if(jobs_, [&](const auto& entry) { return !request.request_id.empty() && entry.second.row.request_id == request.request_id; }); };
+    {
+        const std::lock_guard lock(mutex_);
+        if (const auto same = same_request(); same != jobs_.end()) return view_of(same->second);
+    }
+    auto planned = make_plan(request);
+    if (!planned) return tl::unexpected(planned.error());
+    std::unique_lock lock(mutex_);
+    if (const auto same = same_request(); same != jobs_.end()) return view_of(same->second);
 
     Job job;
     job.row.request_id = request.request_id;
     job.row.manifest = request.manifest;
     job.row.preset = request.preset;
-    job.row.settings = *settings;
+    job.row.settings = planned->settings;
     job.row.overrides = encode_overrides(request.overrides);
     job.row.region = encode_region(request.region);
     job.row.created_seconds = unix_seconds();
-    auto tasks = plan(job.row, **map, *sectors);
+    job.warnings = planned->plan.warnings;
+    auto tasks = carry_out(job.row, planned->map.content, planned->plan);
     if (!tasks) return tl::unexpected(tasks.error());
     const std::int64_t id = job.row.id;
     Job& kept = jobs_[id] = std::move(job);
-    adopt(kept, std::move(*tasks), *sectors);
-    spdlog::info("job {}: {} sectors, {} of them in the cache", id, kept.counts.total, kept.row.sectors_cached);
+    std::vector<map::SectorCoordinate> order;
+    for (const PlannedSector& sector : planned->plan.sectors) order.push_back(sector.sector);
+    adopt(kept, std::move(*tasks), order);
+    spdlog::info("job {}: {} sectors, {} of them in the cache, {} nearly so", id, kept.counts.total, kept.row.sectors_cached, kept.row.sectors_near);
     end_job_if_complete(kept);
     auto view = view_of(kept);
     lock.unlock();
@@ -189,16 +223,20 @@ Result<JobView> Farm::create_job(const JobRequest& request) {
 }
 
 // Writes the job with its tasks, new or known, in one transaction.
-Result<std::vector<TaskRow>> Farm::plan(JobRow& row, const InspectAnswer& map, const std::vector<map::SectorCoordinate>& sectors) {
-    const Digest settings_key = bake::settings_key(row.settings);
+Result<std::vector<TaskRow>> Farm::carry_out(JobRow& row, const Digest& content, const Plan& plan) {
     std::vector<TaskRow> tasks;
     const auto done = database_->transaction([&]() -> Result<void> {
-        for (const map::SectorCoordinate& sector : sectors) {
-            auto task = find_or_add_task(row, map.content, settings_key, sector);
+        for (const PlannedSector& planned : plan.sectors) {
+            auto task = find_or_add_task(row, content, planned);
             if (!task) return tl::unexpected(task.error());
-            if (task->state == TaskState::done) ++row.sectors_cached;
+            if (task->state == TaskState::done) {
+                ++(task->bound > 0 ? row.sectors_near : row.sectors_cached);
+                row.largest_bound = std::max(row.largest_bound, task->bound);
+                if (auto marked = database_->mark_used(task->sector, task->result.result); !marked) return marked;
+            }
             tasks.push_back(std::move(*task));
         }
+        if (auto counted = database_->count(row.sectors_cached, row.sectors_near, 0); !counted) return counted;
         if (auto inserted = database_->insert_job(row); !inserted) return inserted;
         for (const TaskRow& task : tasks) {
             if (auto added = database_->add_job_task(row.id, task.id); !added) return added;
@@ -209,30 +247,32 @@ Result<std::vector<TaskRow>> Farm::plan(JobRow& row, const InspectAnswer& map, c
     return tasks;
 }
 
-Result<TaskRow> Farm::find_or_add_task(const JobRow& job, const Digest& content, const Digest& settings_key, map::SectorCoordinate sector) {
-    const Digest key = task_key(content, settings_key, sector);
-    auto known = database_->task_by_key(key);
+Result<TaskRow> Farm::find_or_add_task(const JobRow& job, const Digest& content, const PlannedSector& planned) {
+    bake::Settings exact = job.settings;
+    exact.tolerance = 0;
+    const auto usable = [&](const std::optional<TaskRow>& task) {
+        return task && (task->state == TaskState::done ? blobs_->has(task->result.result) : task->state == TaskState::pending && tasks_.contains(task->id));
+    };
+    // One that asks for the exact result serves as well: better than to bake the sector twice.
+    auto exact_task = database_->task_by_key(task_key(content, exact, planned.sector));
+    if (!exact_task) return tl::unexpected(exact_task.error());
+    if (usable(*exact_task)) return **exact_task;
+    auto known = database_->task_by_key(task_key(content, job.settings, planned.sector));
     if (!known) return tl::unexpected(known.error());
-    if (!*known) {
-        TaskRow row;
-        row.key = key;
-        row.manifest = job.manifest;
-        row.sector = sector;
-        row.settings = job.settings;
-        if (auto inserted = database_->insert_task(row); !inserted) return tl::unexpected(inserted.error());
-        return row;
-    }
-    TaskRow row = std::move(**known);
-    const bool lost = row.state == TaskState::done && !blobs_->has(row.result.result);
-    if (row.state == TaskState::failed || lost) {
-        // Asked for again: a new chance, from the map that was just submitted.
-        row.state = TaskState::pending;
-        row.failed_attempts = 0;
-        row.error.clear();
-        row.result = {};
-        row.manifest = job.manifest;
-        if (auto updated = database_->update_task(row); !updated) return tl::unexpected(updated.error());
-    }
+    if (usable(*known)) return **known;
+    TaskRow row;
+    if (*known) row = std::move(**known);
+    row.key = task_key(content, job.settings, planned.sector);
+    row.sector = planned.sector;
+    row.settings = job.settings;
+    // Asked for anew, or again after a failure or a loss: from the map that was just submitted.
+    row.manifest = job.manifest;
+    row.state = planned.reused ? TaskState::done : TaskState::pending;
+    row.result = planned.reused.value_or(BakeAnswer{});
+    row.bound = planned.bound;
+    row.failed_attempts = 0;
+    row.error.clear();
+    if (auto written = row.id != 0 ? database_->update_task(row) : database_->insert_task(row); !written) return tl::unexpected(written.error());
     return row;
 }
 
@@ -264,6 +304,7 @@ void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& ou
     if (const auto* baked = std::get_if<BakeAnswer>(&outcome)) {
         task.row.state = TaskState::done;
         task.row.result = *baked;
+        task.row.bound = 0;
     } else {
         const auto* failure = std::get_if<FailureAnswer>(&outcome);
         task.row.state = TaskState::failed;
@@ -274,6 +315,8 @@ void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& ou
         // The result is in the store but not in the books: after a restart the sector is baked again.
         spdlog::error("{}", updated.error().message);
     }
+    // After the task, which holds it while its jobs run.
+    if (const auto* baked = std::get_if<BakeAnswer>(&outcome)) keep_result(task.row, *baked);
     const std::vector<std::int64_t> jobs = task.jobs;
     const TaskRow row = task.row;
     for (std::int64_t job_id : jobs) {
@@ -290,6 +333,73 @@ void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& ou
         changed(job);
     }
     if (jobs.empty()) tasks_.erase(id);
+}
+
+// Without it the file is still there for its job; only no later one finds it.
+void Farm::keep_result(const TaskRow& task, const BakeAnswer& baked) {
+    ResultRow row{0, task.sector, bake::settings_key(task.settings), baked};
+    const auto kept = database_->transaction([&]() -> Result<void> {
+        if (auto inserted = database_->insert_result(row); !inserted) return inserted;
+        return database_->count(0, 0, 1);
+    });
+    if (!kept) {
+        spdlog::error("{}", kept.error().message);
+        return;
+    }
+    cache_bytes_ += baked.size_bytes + baked.footprint_bytes;
+    if (cache_bytes_ <= options_.cache_bytes) return;
+    // Some more than needed, so that not every sector has to wait for this.
+    if (auto shrunk = shrink_cache(options_.cache_bytes / 10 * 9); !shrunk) spdlog::error("{}", shrunk.error().message);
+}
+
+Result<void> Farm::shrink_cache(std::int64_t most_bytes) {
+    constexpr std::size_t batch = 256;
+    std::int64_t removed = 0;
+    while (cache_bytes_ > most_bytes) {
+        const auto rows = database_->idle_results(batch);
+        if (!rows) return tl::unexpected(rows.error());
+        if (rows->empty()) break;  // what is left is needed
+        std::vector<Digest> blobs;
+        const auto done = database_->transaction([&]() -> Result<void> {
+            for (const ResultRow& row : *rows) {
+                if (cache_bytes_ <= most_bytes) break;
+                if (auto gone = database_->remove_result(row.id); !gone) return gone;
+                cache_bytes_ -= row.result.size_bytes + row.result.footprint_bytes;
+                blobs.insert(blobs.end(), {row.result.result, row.result.footprint, row.result.inventory});
+                ++removed;
+            }
+            return {};
+        });
+        if (!done) return done;
+        // The files after the rows: a row without its file would be a result that is lost.
+        std::ranges::sort(blobs);
+        const auto again = std::ranges::unique(blobs);
+        blobs.erase(again.begin(), again.end());
+        for (const Digest& blob : blobs) {
+            const auto needed = database_->is_needed(blob);
+            if (!needed) return tl::unexpected(needed.error());
+            if (!*needed) blobs_->remove(blob);
+        }
+    }
+    if (removed > 0) spdlog::info("{} results left the cache, {} bytes are in it", removed, cache_bytes_);
+    return {};
+}
+
+Result<CacheView> Farm::cache_view() {
+    const auto counts = database_->cache_counts();
+    if (!counts) return tl::unexpected(counts.error());
+    return CacheView{*counts, options_.cache_bytes};
+}
+
+Result<CacheView> Farm::cache() {
+    const std::lock_guard lock(mutex_);
+    return cache_view();
+}
+
+Result<CacheView> Farm::clear_cache() {
+    const std::lock_guard lock(mutex_);
+    if (auto shrunk = shrink_cache(-1); !shrunk) return tl::unexpected(shrunk.error());
+    return cache_view();
 }
 
 void Farm::end_job_if_complete(Job& job) {
@@ -331,7 +441,7 @@ Result<Farm::Job*> Farm::find_job(std::int64_t id) {
 }
 
 Result<JobView> Farm::view_of(const Job& job) {
-    JobView view{job.row, job.counts, job.rays, 0, 0, job.version, {}};
+    JobView view{job.row, job.counts, job.rays, 0, 0, job.version, job.warnings};
     if (job.row.state != JobState::running) {
         const auto counts = database_->job_counts(job.row.id);
         if (!counts) return tl::unexpected(counts.error());
@@ -339,7 +449,7 @@ Result<JobView> Farm::view_of(const Job& job) {
         constexpr std::size_t most_warnings = 20;
         auto warnings = database_->job_warnings(job.row.id, most_warnings);
         if (!warnings) return tl::unexpected(warnings.error());
-        view.warnings = std::move(*warnings);
+        view.warnings.insert(view.warnings.end(), warnings->begin(), warnings->end());
         return view;
     }
     if (job.started && job.baked > 0) {

@@ -9,6 +9,7 @@
 #include "bakerd/farm/job_request.h"
 #include "bakerd/farm/local_executor.h"
 #include "bakerd/farm/manifest.h"
+#include "bakerd/farm/plan.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -36,7 +37,18 @@ struct JobView {
     std::int64_t rays = 0;  // of sectors baked since the server started
     double rays_per_second = 0, seconds_left = 0;
     std::uint64_t version = 0;  // grows with each change
-    std::vector<std::string> warnings;  // of its sectors, the first few; once it has ended
+    std::vector<std::string> warnings;  // of records it could not use; once it has ended, of its sectors, the first few
+};
+
+// What a job would do.
+struct PlanView {
+    Plan plan;
+    double seconds = 0;  // that baking it will take; 0: not known
+};
+
+struct CacheView {
+    CacheCounts counts;
+    std::int64_t limit_bytes = 0;
 };
 
 struct SectorView {
@@ -50,6 +62,7 @@ class Farm {
         std::string data_folder;
         std::vector<std::string> worker_command;
         int threads = 1;
+        std::int64_t cache_bytes = std::int64_t{20} << 30;  // of results; beyond, those used longest ago go
     };
     // Goes on where an earlier run in the same folder stopped.
     [[nodiscard]] static Result<std::unique_ptr<Farm>> open(Options options);
@@ -64,6 +77,7 @@ class Farm {
     [[nodiscard]] Result<MapView> get_map(const Digest& id);
 
     [[nodiscard]] Result<JobView> create_job(const JobRequest& request);
+    [[nodiscard]] Result<PlanView> plan_job(const JobRequest& request);
     [[nodiscard]] Result<JobView> get_job(std::int64_t id);
     // Newest first, ids below `before`.
     [[nodiscard]] Result<std::vector<JobView>> list_jobs(std::int64_t before, std::size_t count);
@@ -74,6 +88,10 @@ class Farm {
     // In the order of (j, i).
     [[nodiscard]] Result<std::vector<SectorView>> list_sectors(std::int64_t job, std::int64_t first, std::int64_t count);
     [[nodiscard]] Result<SectorView> get_sector(std::int64_t job, map::SectorCoordinate sector);
+
+    [[nodiscard]] Result<CacheView> cache();
+    // Removes all results that no running job holds; gives what is left.
+    [[nodiscard]] Result<CacheView> clear_cache();
 
     // Finishes or puts back the running sectors, at most this long.
     void stop(std::chrono::milliseconds patience);
@@ -87,6 +105,7 @@ class Farm {
         std::int64_t rays = 0, baked = 0;    // since the server started
         std::optional<Clock::time_point> started;
         std::uint64_t version = 1;
+        std::vector<std::string> warnings;   // of records that could not be used
     };
     struct Task {
         TaskRow row;
@@ -98,8 +117,19 @@ class Farm {
     [[nodiscard]] Result<void> load();
     void adopt(Job& job, std::vector<TaskRow> tasks, const std::vector<map::SectorCoordinate>& order);
     void reopen(const Task& task);
-    [[nodiscard]] Result<std::vector<TaskRow>> plan(JobRow& row, const InspectAnswer& map, const std::vector<map::SectorCoordinate>& sectors);
-    [[nodiscard]] Result<TaskRow> find_or_add_task(const JobRow& job, const Digest& content, const Digest& settings_key, map::SectorCoordinate sector);
+    // With the settings and the map's summary. Not under the lock: it waits for the worker.
+    struct Planned {
+        bake::Settings settings;
+        InspectAnswer map;
+        Plan plan;
+    };
+    [[nodiscard]] Result<Planned> make_plan(const JobRequest& request);
+    [[nodiscard]] Result<std::vector<TaskRow>> carry_out(JobRow& row, const Digest& content, const Plan& plan);
+    [[nodiscard]] Result<TaskRow> find_or_add_task(const JobRow& job, const Digest& content, const PlannedSector& planned);
+    void keep_result(const TaskRow& task, const BakeAnswer& baked);
+    // Removes results, those used longest ago first, until at most so many bytes are left.
+    [[nodiscard]] Result<void> shrink_cache(std::int64_t most_bytes);
+    [[nodiscard]] Result<CacheView> cache_view();
     [[nodiscard]] std::optional<BakeRequest> next_task();
     void task_finished(std::int64_t id, int failed_attempts, const Outcome& outcome);
     void end_job_if_complete(Job& job);
@@ -117,6 +147,7 @@ class Farm {
     const std::unique_ptr<Database> database_;       // guarded by mutex_
     std::map<std::int64_t, Job> jobs_;               // guarded by mutex_
     std::unordered_map<std::int64_t, Task> tasks_;   // guarded by mutex_; of running jobs
+    std::int64_t cache_bytes_ = 0;                   // guarded by mutex_; of files and footprints
     std::deque<std::int64_t> waiting_;               // guarded by mutex_; tasks in the order of baking
 
     std::unique_ptr<LocalExecutor> executor_;  // last: its thread calls the above

@@ -30,10 +30,10 @@ void LocalExecutor::stop(std::chrono::milliseconds patience) {
     for (auto& [id, request] : in_flight_) refuse(request);
     std::for_each(again_.begin(), again_.end(), refuse);
     const std::lock_guard lock(mutex_);
-    std::for_each(inspections_.begin(), inspections_.end(), refuse);
+    std::for_each(questions_.begin(), questions_.end(), refuse);
     in_flight_.clear();
     again_.clear();
-    inspections_.clear();
+    questions_.clear();
 }
 
 void LocalExecutor::wake() {
@@ -44,15 +44,15 @@ void LocalExecutor::wake() {
     changed_.notify_all();
 }
 
-std::future<Outcome> LocalExecutor::inspect(const map::Digest& manifest) {
+std::future<Outcome> LocalExecutor::ask(WorkerRequest what) {
     Request request;
-    request.what = InspectRequest{0, manifest};
+    request.what = std::move(what);
     request.promise = std::make_shared<std::promise<Outcome>>();
     std::future<Outcome> future = request.promise->get_future();
     {
         const std::lock_guard lock(mutex_);
         if (draining_ || stopping_) request.promise->set_value(FailureAnswer{"the server is stopping", true});
-        else inspections_.push_back(std::move(request));
+        else questions_.push_back(std::move(request));
         woken_ = true;
     }
     changed_.notify_all();
@@ -67,7 +67,7 @@ void LocalExecutor::run() {
             std::unique_lock lock(mutex_);
             idle_ = in_flight_.empty();
             if (idle_) changed_.notify_all();
-            // Not for inspections_: while the window is full they wait for an event.
+            // Not for questions_: while the window is full they wait for an event.
             const auto news = [this] { return stopping_ || woken_ || !events_.empty(); };
             if (in_flight_.empty()) changed_.wait(lock, news);
             else stalled = !changed_.wait_until(lock, last_news_ + options_.stall_limit, news);
@@ -127,9 +127,9 @@ std::optional<LocalExecutor::Request> LocalExecutor::next_request() {
     {
         const std::lock_guard lock(mutex_);
         if (draining_ || stopping_) return std::nullopt;
-        if (!inspections_.empty()) {
-            Request request = std::move(inspections_.front());
-            inspections_.pop_front();
+        if (!questions_.empty()) {
+            Request request = std::move(questions_.front());
+            questions_.pop_front();
             return request;
         }
     }

@@ -52,18 +52,18 @@ class LocalExecutor {
     // There may be something new behind `next`.
     void wake();
 
-    // Imports a map in the worker, before any waiting sector.
-    [[nodiscard]] std::future<Outcome> inspect(const map::Digest& manifest);
+    // Has the worker answer this before any waiting sector.
+    [[nodiscard]] std::future<Outcome> ask(WorkerRequest request);
 
     // Takes no more work, waits at most `patience` until what is in flight has finished, then ends the worker. What
-    // was not finished is not reported; open and later inspections are answered with a refusal.
+    // was not finished is not reported; open and later questions are answered with a refusal.
     void stop(std::chrono::milliseconds patience);
 
   private:
     struct Request {
         WorkerRequest what;
         std::uint64_t caller_id = 0;                                // of a sector
-        std::shared_ptr<std::promise<Outcome>> promise;             // of an inspection
+        std::shared_ptr<std::promise<Outcome>> promise;             // of a question
         int failed_attempts = 0;
         bool alone = false;  // was in flight when a worker died
     };
@@ -90,7 +90,7 @@ class LocalExecutor {
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Event> events_;          // guarded by mutex_
-    std::deque<Request> inspections_;   // guarded by mutex_
+    std::deque<Request> questions_;   // guarded by mutex_
     bool woken_ = false;                // guarded by mutex_
     bool draining_ = false;             // guarded by mutex_
     bool stopping_ = false;             // guarded by mutex_

@@ -1,6 +1,8 @@
 #include "bakerd/farm/worker.h"
 
+#include "bakerd/bake/inventory.h"
 #include "bakerd/bake/sector_bake.h"
+#include "bakerd/farm/assess_results.h"
 #include "bakerd/farm/blob_store.h"
 #include "bakerd/farm/manifest.h"
 #include "bakerd/farm/worker_protocol.h"
@@ -14,6 +16,7 @@
 #include <tbb/task_group.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <future>
@@ -31,6 +34,7 @@ constexpr std::size_t kept_maps = 2;
 struct LoadedMap {
     std::shared_ptr<bake::World> world;
     InspectAnswer summary;
+    std::shared_ptr<const bake::Inventory> inventory;
 };
 
 using MapResult = tl::expected<LoadedMap, FailureAnswer>;
@@ -67,14 +71,27 @@ class Worker {
     What perform(const BakeRequest& request) {
         const MapResult loaded = map_of(request.manifest);
         if (!loaded) return loaded.error();
+        const auto start = std::chrono::steady_clock::now();
         auto baked = bake::bake_sector(*loaded->world, request.sector, request.settings);
         if (!baked) return FailureAnswer{baked.error(), false};
         const auto bytes = bake::encode_sector(baked->sector, baked->warnings);
         if (!bytes) return FailureAnswer{bytes.error(), false};
-        const auto digest = store_->put(*bytes);
+        const std::vector<std::uint8_t> footprint = bake::encode_footprint(baked->footprint);
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        // Lost when nothing rested on it any more.
+        if (!store_->has(loaded->summary.inventory) && !store_->put(bake::encode_inventory(*loaded->inventory))) return FailureAnswer{"the map's record cannot be stored", true};
+        // The footprint first: a result without one could never be found again.
+        const auto footprint_digest = store_->put(footprint), digest = footprint_digest ? store_->put(*bytes) : footprint_digest;
         if (!digest) return FailureAnswer{digest.error().message, true};
         const Sector& sector = baked->sector;
-        return BakeAnswer{*digest, static_cast<std::int64_t>(bytes->size()), static_cast<std::int64_t>(sector.probes.size()), static_cast<std::int64_t>(sector.statistics.rays), baked->warnings};
+        return BakeAnswer{*digest, static_cast<std::int64_t>(bytes->size()), static_cast<std::int64_t>(sector.probes.size()), static_cast<std::int64_t>(sector.statistics.rays), baked->warnings,
+                          *footprint_digest, loaded->summary.inventory, static_cast<std::int64_t>(footprint.size()), seconds};
+    }
+
+    What perform(const AssessRequest& request) {
+        const MapResult loaded = map_of(request.manifest);
+        if (!loaded) return loaded.error();
+        return assess_results(request, *loaded->world, *loaded->inventory, *store_);
     }
 
     // Imports a map once, however many requests ask for it at the same time.
@@ -120,9 +137,12 @@ class Worker {
         auto imported = map::import_map(manifest->roots, manifest_source(*manifest, *store_));
         if (!imported) return tl::unexpected(FailureAnswer{imported.error(), false});
         auto map = std::make_shared<const map::Map>(std::move(*imported));
-        auto world = bake::World::open(device_, map);
+        auto world = bake::World::open(device_, map, shelf_);
         if (!world) return tl::unexpected(FailureAnswer{world.error(), false});
-        LoadedMap loaded{*world, {map->content, (*world)->sectors_with_ground(), static_cast<std::int64_t>(map->objects.size()), 0, map->warnings}};
+        auto inventory = std::make_shared<const bake::Inventory>(bake::take_inventory(**world));
+        const auto inventory_digest = store_->put(bake::encode_inventory(*inventory));
+        if (!inventory_digest) return tl::unexpected(FailureAnswer{inventory_digest.error().message, true});
+        LoadedMap loaded{*world, {map->content, *inventory_digest, (*world)->sectors_with_ground(), static_cast<std::int64_t>(map->objects.size()), 0, map->warnings}, std::move(inventory)};
         loaded.summary.warnings.insert(loaded.summary.warnings.end(), (*world)->warnings().begin(), (*world)->warnings().end());
         for (const map::Object& object : map->objects) {
             for (const map::Primitive& primitive : map->meshes[object.mesh].primitives) loaded.summary.triangle_count += static_cast<std::int64_t>(primitive.triangles.size());
@@ -137,6 +157,7 @@ class Worker {
 
     const std::unique_ptr<BlobStore> store_;
     const std::shared_ptr<const trace::Device> device_;
+    const std::shared_ptr<trace::MeshShelf> shelf_ = std::make_shared<trace::MeshShelf>();  // an edit leaves most meshes as they were
     std::mutex out_mutex_;
     std::FILE* const out_;  // guarded by out_mutex_
     std::mutex maps_mutex_;

@@ -23,7 +23,7 @@ Json to_json(const map::SectorCoordinate& sector) { return Json::array({sector.i
 map::SectorCoordinate sector_from(const Json& json) { return {integer<std::int32_t>(json.at(0)), integer<std::int32_t>(json.at(1))}; }
 
 Json to_json(const bake::Settings& s) {
-    return {{"rays", s.rays}, {"bounces", s.bounces}, {"reach", s.reach_m}, {"min_distance", s.min_distance_m}, {"error", s.error}, {"lprt", s.local_transfer}, {"lprt_bounces", s.local_bounces}, {"lprt_rays", s.local_rays}};
+    return {{"rays", s.rays}, {"bounces", s.bounces}, {"reach", s.reach_m}, {"min_distance", s.min_distance_m}, {"error", s.error}, {"lprt", s.local_transfer}, {"lprt_bounces", s.local_bounces}, {"lprt_rays", s.local_rays}, {"tolerance", s.tolerance}};
 }
 bake::Settings settings_from(const Json& json) {
     bake::Settings s;
@@ -31,6 +31,7 @@ bake::Settings settings_from(const Json& json) {
     s.bounces = integer<std::uint32_t>(json.at("bounces"));
     s.reach_m = json.at("reach").get<float>();
     s.min_distance_m = json.at("min_distance").get<float>();
+    s.tolerance = json.value("tolerance", 0.0f);  // before there was one, results were exact
     if (!json.contains("error")) return s;  // written before there were the others
     s.error = json.at("error").get<float>();
     s.local_transfer = json.at("lprt").get<bool>();
@@ -43,6 +44,51 @@ map::Digest digest_from(const Json& json) {
     const auto digest = map::digest_from_hex(json.get<std::string>());
     if (!digest) throw Json::other_error::create(501, "malformed digest", nullptr);
     return *digest;
+}
+
+Json to_json(const AssessRequest& request) {
+    Json sectors = Json::array();
+    for (const AssessRequest::Sector& sector : request.sectors) {
+        Json candidates = Json::array();
+        for (const auto& [footprint, inventory] : sector.candidates) candidates.push_back({to_hex(footprint), to_hex(inventory)});
+        sectors.push_back({to_json(sector.sector), std::move(candidates)});
+    }
+    return {{"id", request.id}, {"op", "assess"}, {"map", to_hex(request.manifest)}, {"settings", to_json(request.settings)}, {"sectors", std::move(sectors)}};
+}
+
+AssessRequest assess_request_from(const Json& json) {
+    AssessRequest request{integer<std::uint64_t>(json.at("id")), digest_from(json.at("map")), settings_from(json.at("settings")), {}};
+    for (const Json& sector : json.at("sectors")) {
+        AssessRequest::Sector& asked = request.sectors.emplace_back();
+        asked.sector = sector_from(sector.at(0));
+        for (const Json& candidate : sector.at(1)) asked.candidates.push_back({digest_from(candidate.at(0)), digest_from(candidate.at(1))});
+    }
+    return request;
+}
+
+Json to_json(const AssessAnswer& answer) {
+    Json sectors = Json::array(), changes = Json::array();
+    for (const AssessAnswer::Sector& sector : answer.sectors) sectors.push_back({static_cast<unsigned>(sector.verdict), sector.candidate, sector.bound, sector.reason});
+    for (const AssessAnswer::Change& change : answer.changes) {
+        const map::Bounds& b = change.bounds;
+        changes.push_back({change.what, b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z});
+    }
+    return {{"verdicts", std::move(sectors)}, {"changes", std::move(changes)}, {"warnings", answer.warnings}};
+}
+
+AssessAnswer assess_answer_from(const Json& json) {
+    AssessAnswer answer;
+    for (const Json& sector : json.at("verdicts")) {
+        const auto verdict = integer<std::uint8_t>(sector.at(0));
+        if (verdict > static_cast<std::uint8_t>(bake::Verdict::rebake)) throw Json::other_error::create(504, "unknown verdict", nullptr);
+        answer.sectors.push_back({static_cast<bake::Verdict>(verdict), integer<std::size_t>(sector.at(1)), sector.at(2).get<float>(), sector.at(3).get<std::string>()});
+    }
+    for (const Json& change : json.at("changes")) {
+        const auto number = [&](std::size_t n) { return change.at(n).get<float>(); };
+        answer.changes.push_back({change.at(0).get<std::string>(), {{number(1), number(2), number(3)}, {number(4), number(5), number(6)}}});
+    }
+    answer.warnings = json.at("warnings").get<std::vector<std::string>>();
+    return answer;
 }
 
 // A line from the other side is trusted no further than this: anything odd is nothing.
@@ -60,6 +106,7 @@ auto guarded(std::string_view text, Decode decode) -> std::optional<decltype(dec
 
 std::string encode(const WorkerRequest& request) {
     if (const auto* inspect = std::get_if<InspectRequest>(&request)) return line({{"id", inspect->id}, {"op", "inspect"}, {"map", to_hex(inspect->manifest)}});
+    if (const auto* assess = std::get_if<AssessRequest>(&request)) return line(to_json(*assess));
     const auto& bake = std::get<BakeRequest>(request);
     return line({{"id", bake.id}, {"op", "bake"}, {"map", to_hex(bake.manifest)}, {"sector", to_json(bake.sector)}, {"settings", to_json(bake.settings)}});
 }
@@ -68,6 +115,7 @@ std::optional<WorkerRequest> decode_request(std::string_view text) {
     return guarded(text, [](const Json& json) -> WorkerRequest {
         const auto id = integer<std::uint64_t>(json.at("id"));
         const auto op = json.at("op").get<std::string>();
+        if (op == "assess") return assess_request_from(json);
         if (op != "inspect" && op != "bake") throw Json::other_error::create(503, "unknown request", nullptr);
         if (op == "inspect") return InspectRequest{id, digest_from(json.at("map"))};
         return BakeRequest{id, digest_from(json.at("map")), sector_from(json.at("sector")), settings_from(json.at("settings"))};
@@ -79,9 +127,12 @@ std::string encode(const WorkerAnswer& answer) {
     if (const auto* inspected = std::get_if<InspectAnswer>(&answer.what)) {
         Json sectors = Json::array();
         for (const map::SectorCoordinate& sector : inspected->sectors) sectors.push_back(to_json(sector));
-        json.update({{"content", to_hex(inspected->content)}, {"sectors", std::move(sectors)}, {"objects", inspected->object_count}, {"triangles", inspected->triangle_count}, {"warnings", inspected->warnings}});
+        json.update({{"content", to_hex(inspected->content)}, {"inventory", to_hex(inspected->inventory)}, {"sectors", std::move(sectors)}, {"objects", inspected->object_count}, {"triangles", inspected->triangle_count}, {"warnings", inspected->warnings}});
     } else if (const auto* baked = std::get_if<BakeAnswer>(&answer.what)) {
-        json.update({{"result", to_hex(baked->result)}, {"size", baked->size_bytes}, {"probes", baked->probes}, {"rays", baked->rays}, {"warnings", baked->warnings}});
+        json.update({{"result", to_hex(baked->result)}, {"size", baked->size_bytes}, {"probes", baked->probes}, {"rays", baked->rays}, {"warnings", baked->warnings},
+                     {"footprint", to_hex(baked->footprint)}, {"inventory", to_hex(baked->inventory)}, {"footprint_size", baked->footprint_bytes}, {"seconds", baked->seconds}});
+    } else if (const auto* assessed = std::get_if<AssessAnswer>(&answer.what)) {
+        json.update(to_json(*assessed));
     } else {
         const auto& failure = std::get<FailureAnswer>(answer.what);
         json.update({{"error", failure.sentence}, {"retry", failure.may_retry}});
@@ -96,10 +147,14 @@ std::optional<WorkerAnswer> decode_answer(std::string_view text) {
         if (json.contains("error")) {
             answer.what = FailureAnswer{json.at("error").get<std::string>(), json.at("retry").get<bool>()};
         } else if (json.contains("result")) {
-            answer.what = BakeAnswer{digest_from(json.at("result")), integer<std::int64_t>(json.at("size")), integer<std::int64_t>(json.at("probes")), integer<std::int64_t>(json.at("rays")), json.at("warnings").get<std::vector<std::string>>()};
+            answer.what = BakeAnswer{digest_from(json.at("result")), integer<std::int64_t>(json.at("size")), integer<std::int64_t>(json.at("probes")), integer<std::int64_t>(json.at("rays")), json.at("warnings").get<std::vector<std::string>>(),
+                                     digest_from(json.at("footprint")), digest_from(json.at("inventory")), integer<std::int64_t>(json.at("footprint_size")), json.at("seconds").get<double>()};
+        } else if (json.contains("verdicts")) {
+            answer.what = assess_answer_from(json);
         } else {
             InspectAnswer inspected;
             inspected.content = digest_from(json.at("content"));
+            if (json.contains("inventory")) inspected.inventory = digest_from(json.at("inventory"));  // else kept from before there were any
             for (const Json& sector : json.at("sectors")) inspected.sectors.push_back(sector_from(sector));
             inspected.object_count = integer<std::int64_t>(json.at("objects"));
             inspected.triangle_count = integer<std::int64_t>(json.at("triangles"));

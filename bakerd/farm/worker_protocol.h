@@ -2,6 +2,7 @@
 // answers on its standard output, matched by id and in any order.
 #pragma once
 
+#include "bakerd/bake/assessment.h"
 #include "bakerd/bake/settings.h"
 #include "bakerd/map/digest.h"
 #include "bakerd/map/ground.h"
@@ -29,10 +30,26 @@ struct BakeRequest {
     bake::Settings settings;
 };
 
-using WorkerRequest = std::variant<InspectRequest, BakeRequest>;
+// Asks which older results of sectors hold for a map.
+struct AssessRequest {
+    struct Candidate {
+        map::Digest footprint, inventory;  // of the result, and of the map of which it was baked
+    };
+    struct Sector {
+        map::SectorCoordinate sector;
+        std::vector<Candidate> candidates;  // the likeliest first
+    };
+    std::uint64_t id = 0;
+    map::Digest manifest;
+    bake::Settings settings;
+    std::vector<Sector> sectors;
+};
+
+using WorkerRequest = std::variant<InspectRequest, BakeRequest, AssessRequest>;
 
 struct InspectAnswer {
     map::Digest content;
+    map::Digest inventory;  // a blob (bake/inventory.h)
     std::vector<map::SectorCoordinate> sectors;  // with ground, by (j, i)
     std::int64_t object_count = 0, triangle_count = 0;
     std::vector<std::string> warnings;
@@ -42,6 +59,26 @@ struct BakeAnswer {
     map::Digest result;
     std::int64_t size_bytes = 0, probes = 0, rays = 0;
     std::vector<std::string> warnings;  // one sentence each
+    map::Digest footprint = {}, inventory = {};  // blobs: what the result depends on, and the map of which it was baked
+    std::int64_t footprint_bytes = 0;
+    double seconds = 0;  // it took, beside other sectors
+};
+
+struct AssessAnswer {
+    struct Sector {
+        bake::Verdict verdict = bake::Verdict::rebake;
+        std::size_t candidate = 0;  // unless rebake
+        float bound = 0;
+        std::string reason;         // one sentence; empty of a hit
+    };
+    // Something that is not as it was in the map of a result, with where it is and was.
+    struct Change {
+        std::string what;
+        map::Bounds bounds;
+    };
+    std::vector<Sector> sectors;        // in the order of the request
+    std::vector<Change> changes;        // the first of them, without those that stand nowhere
+    std::vector<std::string> warnings;  // of records that cannot be used, one sentence each
 };
 
 struct FailureAnswer {
@@ -51,7 +88,7 @@ struct FailureAnswer {
 
 struct WorkerAnswer {
     std::uint64_t id = 0;
-    std::variant<InspectAnswer, BakeAnswer, FailureAnswer> what;
+    std::variant<InspectAnswer, BakeAnswer, AssessAnswer, FailureAnswer> what;
 };
 
 [[nodiscard]] std::string encode(const WorkerRequest& request);

@@ -43,6 +43,8 @@ void fill(const farm::JobView& view, v1::Job& out) {
     out.set_sectors_done(view.counts.done);
     out.set_sectors_failed(view.counts.failed);
     out.set_sectors_cached(row.sectors_cached);
+    out.set_sectors_near(row.sectors_near);
+    out.set_largest_bound(static_cast<double>(row.largest_bound));
     out.set_probes(view.counts.probes);
     out.set_rays(view.rays);
     out.set_rays_per_second(view.rays_per_second);
@@ -50,6 +52,26 @@ void fill(const farm::JobView& view, v1::Job& out) {
     out.set_create_time_seconds(row.created_seconds);
     out.set_end_time_seconds(row.ended_seconds);
     for (const std::string& warning : view.warnings) out.add_warnings(warning);
+}
+
+v1::PlannedSector::Verdict to_proto(bake::Verdict verdict) {
+    switch (verdict) {
+        case bake::Verdict::hit: return v1::PlannedSector::HIT;
+        case bake::Verdict::near_hit: return v1::PlannedSector::NEAR_HIT;
+        case bake::Verdict::rebake: return v1::PlannedSector::REBAKE;
+    }
+    return v1::PlannedSector::VERDICT_UNSPECIFIED;
+}
+
+farm::Result<farm::JobRequest> wanted_job(const v1::Job& job) {
+    const auto map = map_from_name(job.map());
+    if (!map) return tl::unexpected(map.error());
+    farm::JobRequest wanted;
+    wanted.manifest = *map;
+    wanted.preset = job.settings().preset();
+    wanted.overrides.insert(job.settings().overrides().begin(), job.settings().overrides().end());
+    if (job.has_region()) wanted.region = farm::Region{job.region().x0(), job.region().y0(), job.region().x1(), job.region().y1()};
+    return wanted;
 }
 
 grpc::Status answer(const farm::Result<farm::JobView>& view, v1::Job* response) {
@@ -61,16 +83,38 @@ grpc::Status answer(const farm::Result<farm::JobView>& view, v1::Job* response) 
 }  // namespace
 
 grpc::Status JobsService::CreateJob(grpc::ServerContext*, const v1::CreateJobRequest* request, v1::Job* response) {
-    const v1::Job& job = request->job();
-    const auto map = map_from_name(job.map());
-    if (!map) return to_status(map.error());
-    farm::JobRequest wanted;
-    wanted.manifest = *map;
-    wanted.preset = job.settings().preset();
-    wanted.overrides.insert(job.settings().overrides().begin(), job.settings().overrides().end());
-    if (job.has_region()) wanted.region = farm::Region{job.region().x0(), job.region().y0(), job.region().x1(), job.region().y1()};
-    wanted.request_id = request->request_id();
-    return answer(farm_.create_job(wanted), response);
+    auto wanted = wanted_job(request->job());
+    if (!wanted) return to_status(wanted.error());
+    wanted->request_id = request->request_id();
+    return answer(farm_.create_job(*wanted), response);
+}
+
+grpc::Status JobsService::PlanJob(grpc::ServerContext*, const v1::PlanJobRequest* request, v1::Plan* response) {
+    const auto wanted = wanted_job(request->job());
+    if (!wanted) return to_status(wanted.error());
+    const auto view = farm_.plan_job(*wanted);
+    if (!view) return to_status(view.error());
+    for (const farm::PlannedSector& planned : view->plan.sectors) {
+        v1::PlannedSector& sector = *response->add_sectors();
+        sector.set_i(planned.sector.i);
+        sector.set_j(planned.sector.j);
+        sector.set_verdict(to_proto(planned.verdict));
+        sector.set_bound(static_cast<double>(planned.bound));
+        sector.set_reason(planned.reason);
+    }
+    for (const auto& [what, bounds] : view->plan.changes) {
+        v1::MapChange& change = *response->add_changes();
+        change.set_what(what);
+        change.set_x0(static_cast<double>(bounds.low.x));
+        change.set_y0(static_cast<double>(bounds.low.y));
+        change.set_z0(static_cast<double>(bounds.low.z));
+        change.set_x1(static_cast<double>(bounds.high.x));
+        change.set_y1(static_cast<double>(bounds.high.y));
+        change.set_z1(static_cast<double>(bounds.high.z));
+    }
+    response->set_seconds(view->seconds);
+    for (const std::string& warning : view->plan.warnings) response->add_warnings(warning);
+    return grpc::Status::OK;
 }
 
 grpc::Status JobsService::GetJob(grpc::ServerContext*, const v1::GetJobRequest* request, v1::Job* response) {

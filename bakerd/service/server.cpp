@@ -54,12 +54,13 @@ tl::expected<void, std::string> check_address(const std::string& address) {
 }  // namespace
 
 struct Server::State {
-    explicit State(farm::Farm& farm) : blobs(farm), maps(farm), jobs(farm, stopping), sectors(farm) {}
+    explicit State(farm::Farm& farm) : blobs(farm), maps(farm), jobs(farm, stopping), sectors(farm), cache(farm) {}
     std::atomic<bool> stopping{false};
     BlobsService blobs;
     MapsService maps;
     JobsService jobs;
     SectorsService sectors;
+    CacheService cache;
     std::string host;
     int port = 0;
     std::unique_ptr<grpc::Server> server;
@@ -84,6 +85,7 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(farm::Farm& far
     builder.RegisterService(&state->maps);
     builder.RegisterService(&state->jobs);
     builder.RegisterService(&state->sectors);
+    builder.RegisterService(&state->cache);
     state->server = builder.BuildAndStart();
     if (!state->server || state->port == 0) return tl::unexpected(fmt::format("cannot listen on {}: the port is in use, or the host is not an address of this machine", address));
     return std::unique_ptr<Server>(new Server(std::move(state)));

@@ -4,6 +4,7 @@
 #include "bakerd/farm/farm.h"
 
 #include "drtv/v1/blob.grpc.pb.h"
+#include "drtv/v1/cache.grpc.pb.h"
 #include "drtv/v1/job.grpc.pb.h"
 #include "drtv/v1/map.grpc.pb.h"
 #include "drtv/v1/sector.grpc.pb.h"
@@ -37,6 +38,7 @@ class JobsService final : public v1::Jobs::Service {
     // `stopping` ends watches when the server does.
     JobsService(farm::Farm& farm, const std::atomic<bool>& stopping) : farm_(farm), stopping_(stopping) {}
     grpc::Status CreateJob(grpc::ServerContext* context, const v1::CreateJobRequest* request, v1::Job* response) override;
+    grpc::Status PlanJob(grpc::ServerContext* context, const v1::PlanJobRequest* request, v1::Plan* response) override;
     grpc::Status GetJob(grpc::ServerContext* context, const v1::GetJobRequest* request, v1::Job* response) override;
     grpc::Status ListJobs(grpc::ServerContext* context, const v1::ListJobsRequest* request, v1::ListJobsResponse* response) override;
     grpc::Status CancelJob(grpc::ServerContext* context, const v1::CancelJobRequest* request, v1::Job* response) override;
@@ -56,6 +58,16 @@ class SectorsService final : public v1::Sectors::Service {
 
   private:
     [[nodiscard]] grpc::Status send(const farm::SectorView& view, grpc::ServerWriter<v1::PullSectorsResponse>& writer);
+    farm::Farm& farm_;
+};
+
+class CacheService final : public v1::Cache::Service {
+  public:
+    explicit CacheService(farm::Farm& farm) : farm_(farm) {}
+    grpc::Status GetCache(grpc::ServerContext* context, const v1::GetCacheRequest* request, v1::CacheState* response) override;
+    grpc::Status ClearCache(grpc::ServerContext* context, const v1::ClearCacheRequest* request, v1::CacheState* response) override;
+
+  private:
     farm::Farm& farm_;
 };
 

@@ -1,5 +1,5 @@
 // One BVH a mesh, built when a scene first needs it and dropped when no scene does: memory follows the reach,
-// not the map.
+// not the map. Revisions of a map share those of meshes that did not change.
 #pragma once
 
 #include "bakerd/map/map.h"
@@ -7,6 +7,7 @@
 #include "bakerd/trace/triangle_set.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -17,25 +18,43 @@ namespace drtv::trace {
 
 class MeshBvh {
   public:
-    MeshBvh(std::shared_ptr<const Device> device, std::shared_ptr<const map::Map> map, std::uint32_t mesh);
+    MeshBvh(std::shared_ptr<const Device> device, std::shared_ptr<const map::Map> map, std::uint32_t mesh, std::uint64_t revision);
     ~MeshBvh();
     MeshBvh(const MeshBvh&) = delete;
     MeshBvh& operator=(const MeshBvh&) = delete;
 
     [[nodiscard]] RTCSceneTy* handle() const { return handle_; }
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
     [[nodiscard]] const TriangleSet& set(std::uint32_t embree_geometry) const { return *sets_[embree_geometry]; }
 
   private:
     std::shared_ptr<const Device> device_;
     std::shared_ptr<const map::Map> map_;
     std::vector<std::unique_ptr<TriangleSet>> sets_;  // by Embree's geometry id
+    const std::uint64_t revision_;
     RTCSceneTy* handle_;
+};
+
+// BVHs by the digest of their meshes, for the maps that are opened one after the other. Thread-safe.
+class MeshShelf {
+  public:
+    // The number of the next map.
+    [[nodiscard]] std::uint64_t next_revision();
+    // One that a scene still holds; nothing otherwise. A BVH keeps its whole map in memory: that of a map opened long ago is not handed out any more.
+    [[nodiscard]] std::shared_ptr<const MeshBvh> find(const map::Digest& mesh, std::uint64_t revision);
+    void keep(const map::Digest& mesh, const std::shared_ptr<const MeshBvh>& bvh);
+
+  private:
+    std::mutex mutex_;
+    std::uint64_t revisions_ = 0;                                  // guarded by mutex_
+    std::map<map::Digest, std::weak_ptr<const MeshBvh>> by_mesh_;  // guarded by mutex_
 };
 
 // The meshes of one map. Thread-safe.
 class MapGeometry {
   public:
-    MapGeometry(std::shared_ptr<const Device> device, std::shared_ptr<const map::Map> map);
+    // With a shelf, meshes that an earlier map had are taken from there.
+    MapGeometry(std::shared_ptr<const Device> device, std::shared_ptr<const map::Map> map, std::shared_ptr<MeshShelf> shelf = nullptr);
 
     [[nodiscard]] std::shared_ptr<const MeshBvh> bvh_of(std::uint32_t mesh);
     [[nodiscard]] const std::shared_ptr<const map::Map>& map() const { return map_; }
@@ -48,6 +67,8 @@ class MapGeometry {
     };
     const std::shared_ptr<const Device> device_;
     const std::shared_ptr<const map::Map> map_;
+    const std::shared_ptr<MeshShelf> shelf_;  // may be none
+    const std::uint64_t revision_;
     std::vector<Slot> slots_;  // by mesh
 };
 

@@ -7,11 +7,13 @@ import json
 import os
 import signal
 import struct
+import subprocess
 import sys
 import time
 import unittest
 
 import farm_fixture
+import map_edits
 from farm_fixture import Farm, make_island, read_folder, tiny_disk, wait_until
 
 OPTIONS = argparse.Namespace(bin="", data="")
@@ -450,6 +452,88 @@ class Daemon(FarmTest):
             file.write('{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 3, "uri": "../secret.bin"}]}')
         self.assert_sentence(self.farm.bake(daemon, "submit", broken), "leaves the map's folder")
         self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
+
+
+class Incremental(FarmTest):
+    def job_of(self, daemon, *arguments, name="pulled"):
+        """Submits and pulls; gives the job at its end."""
+        done = self.farm.bake(daemon, "--json", "submit", *arguments, "--pull", self.farm.path(name))
+        self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+        return self.farm.job(daemon, json.loads(done.stdout.splitlines()[-1])["job"])
+
+    def test_edits_bake_what_they_changed_and_no_byte_less(self):
+        """A few of what edits.py does by the hundred."""
+        done = subprocess.run([sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "edits.py"), "--bin", OPTIONS.bin, "--edits", "10", "--sequence", "5", "--rays", "64",
+                               "--plants", "700", "--seed", "4", "--region=-130,-190,250,120"], capture_output=True, text=True, timeout=600, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_a_plan_says_what_a_job_then_does(self):
+        daemon = self.farm.daemon()
+        edited = map_edits.EditableMap(self.island())
+        first = edited.write(self.farm.path("first"))
+        fresh = json.loads(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS).stdout)
+        self.assertEqual((fresh["hits"], fresh["rebakes"]), (0, 35))
+        self.assertEqual(fresh["sectors"][0]["reason"], "it was not baked before")
+        self.assertEqual(self.job_of(daemon, first, *REGION, *FEW_RAYS)["sectors_cached"], 0)
+        self.assertEqual(json.loads(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS).stdout)["hits"], 35)
+
+        number = edited.plants()[0]
+        edited.nodes[number]["name"] = "the_palm"
+        self.assertEqual(json.loads(self.farm.bake(daemon, "--json", "plan", edited.write(self.farm.path("named")), *REGION, *FEW_RAYS).stdout)["hits"], 35)
+        self.job_of(daemon, self.farm.path("named"), *REGION, *FEW_RAYS)
+        # One that every rock of this sector sees: the crater's middle.
+        edited.nodes[number]["translation"] = [60.0, 60.0, 10.0]
+        moved = edited.write(self.farm.path("moved"))
+        picture = self.farm.path("plan.png")
+        plan = json.loads(self.farm.bake(daemon, "--json", "plan", moved, *REGION, *FEW_RAYS, "--png", picture).stdout)
+        self.assertEqual(plan["hits"] + plan["near_hits"] + plan["rebakes"], 35)
+        self.assertGreater(plan["rebakes"], 0)
+        self.assertGreater(plan["seconds"], 0)
+        self.assertTrue(any("the_palm" in change["what"] for change in plan["changes"]), plan["changes"])
+        for sector in plan["sectors"]:
+            self.assertEqual("reason" in sector, sector["verdict"] != "hit", sector)
+        with open(picture, "rb") as file:
+            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+        text = self.farm.bake(daemon, "plan", moved, *REGION, *FEW_RAYS).stdout
+        self.assertIn(f"{plan['rebakes']} to bake, about 0:", text)
+        self.assertIn("the_palm", text)
+
+        job = self.job_of(daemon, moved, *REGION, *FEW_RAYS)
+        self.assertEqual((job["sectors_cached"], job["sectors_near"]), (plan["hits"], plan["near_hits"]))
+        undone = self.job_of(daemon, first, *REGION, *FEW_RAYS)
+        self.assertEqual(undone["sectors_cached"], 35)
+        exact = self.job_of(daemon, moved, *REGION, *FEW_RAYS, "--exact", name="exact")
+        self.assertEqual((exact["sectors_near"], exact["largest_bound"]), (0, 0))
+        other = self.farm.daemon("other")
+        self.assertEqual(self.pulled(other, moved, *REGION, *FEW_RAYS, "--exact", name="from_nothing"), read_folder(self.farm.path("exact")))
+
+    def test_two_clients_at_once_bake_each_sector_once(self):
+        daemon = self.farm.daemon()
+        island = self.island()
+        clients = [self.farm.start_bake(daemon, "submit", island, *REGION, *FEW_RAYS, "--pull", self.farm.path(f"client_{n}")) for n in range(2)]
+        for client in clients:
+            client.communicate(timeout=120)
+            self.assertEqual(client.returncode, 0)
+        self.assertEqual(read_folder(self.farm.path("client_0")), read_folder(self.farm.path("client_1")))
+        self.assertEqual(json.loads(self.farm.bake(daemon, "--json", "cache").stdout)["baked"], 35)
+
+    def test_the_cache_is_shown_limited_and_cleared(self):
+        daemon = self.farm.daemon("data", "--cache-size", "300KB")
+        island = self.island()
+        self.pulled(daemon, island, *REGION, *FEW_RAYS)
+        shown = json.loads(self.farm.bake(daemon, "--json", "cache").stdout)
+        self.assertEqual((shown["limit"], shown["baked"], shown["hits"]), (300000, 35, 0))
+        self.pulled(daemon, island, *REGION, "--preset", "draft", "--set", "rays=32", name="other")
+        self.assertEqual(len(read_folder(self.farm.path("other"))), 35)
+        self.pulled(daemon, island, "--region", "0,0,1,1", "--preset", "draft", "--set", "rays=16", name="third")
+        shown = json.loads(self.farm.bake(daemon, "--json", "cache").stdout)
+        self.assertLessEqual(shown["size"], 300000)
+        self.assertGreater(shown["results"], 0)
+        self.assertIn("hit rate", self.farm.bake(daemon, "cache").stdout)
+        self.assertEqual(json.loads(self.farm.bake(daemon, "--json", "cache", "--clear").stdout)["results"], 0)
+        self.assert_sentence(self.farm.run("bakerd", "serve", "--data", self.farm.path("x"), "--cache-size", "much", timeout=20), "--cache-size", status=2)
+        self.assert_sentence(self.farm.bake(daemon, "plan", island, "--png", self.farm.path("no/folder.png"), *REGION, *FEW_RAYS), "no/folder.png", status=1)
+        self.assert_sentence(self.farm.bake(daemon, "plan", island, "--set", "tolerance=2"), "tolerance", "0.0625", status=1)
 
 
 class RealMaps(FarmTest):

@@ -59,7 +59,7 @@ TEST_F(DatabaseTest, AReopenedFileHasAllOfIt) {
     const TaskRow task = add_task(-3, 5, TaskState::failed);
     EXPECT_GT(other.id, job.id);
     ASSERT_TRUE(database->add_job_task(job.id, task.id));
-    ASSERT_TRUE(database->put_map(digest_of("map"), {digest_of("content"), {{1, 2}}, 3, 4, {"warned"}}));
+    ASSERT_TRUE(database->put_map(digest_of("map"), {digest_of("content"), digest_of("inventory"), {{1, 2}}, 3, 4, {"warned"}}));
     job.state = JobState::failed;
     job.error = "reason";
     job.ended_seconds = 2000;
@@ -191,6 +191,83 @@ TEST_F(DatabaseTest, AKeyNamesOneTask) {
     EXPECT_FALSE(database->insert_task(second));
 }
 
+class ResultsTest : public DatabaseTest {
+  protected:
+    ResultRow add_result(map::SectorCoordinate sector, const std::string& file) {
+        ResultRow row{0, sector, digest_of("settings"), {digest_of(file), 100, 10, 1000, {"one", "two"}, digest_of(file + " footprint"), digest_of("inventory"), 20, 1.5}};
+        EXPECT_TRUE(database->insert_result(row));
+        return row;
+    }
+    std::vector<Digest> files(map::SectorCoordinate sector) {
+        std::vector<Digest> found;
+        const std::vector<ResultRow> rows = database->results(sector, digest_of("settings"), 10).value();
+        for (const ResultRow& row : rows) found.push_back(row.result.result);
+        return found;
+    }
+};
+
+TEST_F(ResultsTest, ComeTheOneUsedLastFirst) {
+    add_result({1, -2}, "a");
+    add_result({1, -2}, "b");
+    add_result({2, -2}, "c");
+    EXPECT_EQ(files({1, -2}), (std::vector<Digest>{digest_of("b"), digest_of("a")}));
+    ASSERT_TRUE(database->mark_used({1, -2}, digest_of("a")));
+    reopen();
+    EXPECT_EQ(files({1, -2}), (std::vector<Digest>{digest_of("a"), digest_of("b")}));
+    EXPECT_TRUE(database->results({1, -2}, digest_of("other settings"), 10)->empty());
+    const ResultRow row = database->results({1, -2}, digest_of("settings"), 1).value().at(0);
+    EXPECT_EQ(std::tuple(row.result.size_bytes, row.result.probes, row.result.rays, row.result.footprint_bytes, row.result.seconds), std::tuple(100, 10, 1000, 20, 1.5));
+    EXPECT_EQ(row.result.warnings, (std::vector<std::string>{"one", "two"}));
+    EXPECT_EQ(std::tuple(row.result.footprint, row.result.inventory), std::tuple(digest_of("a footprint"), digest_of("inventory")));
+}
+
+TEST_F(ResultsTest, WhatARunningJobHoldsIsNotIdle) {
+    const ResultRow held = add_result({0, 0}, "held"), idle = add_result({0, 1}, "idle");
+    TaskRow task = add_task(0, 0, TaskState::done);
+    task.result.result = digest_of("held");
+    ASSERT_TRUE(database->update_task(task));
+    JobRow job = add_job();
+    ASSERT_TRUE(database->add_job_task(job.id, task.id));
+    auto rows = database->idle_results(10).value();
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].id, idle.id);
+    ASSERT_TRUE(database->remove_result(held.id));
+    EXPECT_TRUE(database->is_needed(digest_of("held")).value()) << "the job has it";
+    job.state = JobState::succeeded;
+    ASSERT_TRUE(database->update_job(job));
+    EXPECT_FALSE(database->is_needed(digest_of("held")).value());
+    EXPECT_TRUE(database->is_needed(digest_of("inventory")).value()) << "the other result has it";
+    EXPECT_TRUE(database->is_needed(digest_of("idle footprint")).value());
+    ASSERT_TRUE(database->remove_result(idle.id));
+    EXPECT_FALSE(database->is_needed(digest_of("inventory")).value());
+}
+
+TEST_F(ResultsTest, AreCounted) {
+    EXPECT_EQ(database->mean_seconds(digest_of("settings")).value(), 0);
+    add_result({0, 0}, "a");
+    add_result({0, 1}, "b");
+    ASSERT_TRUE(database->count(3, 2, 1));
+    ASSERT_TRUE(database->count(1, 0, 0));
+    const CacheCounts counts = database->cache_counts().value();
+    EXPECT_EQ(std::tuple(counts.results, counts.bytes, counts.hits, counts.near_hits, counts.baked), std::tuple(2, 240, 4, 2, 1));
+    EXPECT_EQ(database->mean_seconds(digest_of("settings")).value(), 1.5);
+    EXPECT_EQ(database->mean_seconds(digest_of("never asked for")).value(), 1.5);
+}
+
+TEST_F(DatabaseTest, BoundsComeBack) {
+    JobRow job = add_job();
+    TaskRow task = add_task(0, 0, TaskState::done);
+    task.bound = 0.25f;
+    ASSERT_TRUE(database->update_task(task));
+    EXPECT_EQ(database->task_by_key(task.key).value()->bound, 0.25f);
+    JobRow near;
+    near.sectors_near = 7;
+    near.largest_bound = 0.5f;
+    ASSERT_TRUE(database->insert_job(near));
+    EXPECT_EQ(database->jobs().value().at(1).sectors_near, 7);
+    EXPECT_EQ(database->jobs().value().at(1).largest_bound, 0.5f);
+}
+
 TEST_F(DatabaseTest, ANewerSchemaIsRefusedAndLeftAlone) {
     database.reset();
     sqlite3* handle = nullptr;
@@ -278,6 +355,7 @@ TEST_F(FirstSchema, RowsKeepTheirSettings) {
     asked.bounces = 2;
     asked.reach_m = 64;
     asked.min_distance_m = 7;
+    asked.tolerance = 0;  // there was none
     EXPECT_EQ(database->jobs().value().at(0).settings, asked);
     const auto tasks = database->job_tasks(5).value();
     ASSERT_EQ(tasks.size(), 2u);

@@ -53,6 +53,8 @@ void answer(const BakeRequest& request) {
     say({request.id, baked(request)});
 }
 
+void answer(const AssessRequest& request) { say({request.id, FailureAnswer{"the fake worker has no opinion", false}}); }
+
 void answer(const InspectRequest& request) {
     if (request.manifest.bytes[0] == fake::silent_map) return;
     if (request.manifest.bytes[0] == fake::deadly_map) std::raise(SIGKILL);

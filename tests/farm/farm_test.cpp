@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 
 namespace drtv::farm {
 namespace {
@@ -50,8 +51,8 @@ class FarmTest : public testing::Test {
         open();
     }
 
-    void open() {
-        auto opened = Farm::open({data(), {DRTV_BINARY_DIR "/bakerd", "worker", "--blobs", data() + "/blobs", "--threads", "2"}, 2});
+    void open(std::int64_t cache_bytes = std::int64_t{1} << 30) {
+        auto opened = Farm::open({data(), {DRTV_BINARY_DIR "/bakerd", "worker", "--blobs", data() + "/blobs", "--threads", "2"}, 2, cache_bytes});
         ASSERT_TRUE(opened) << opened.error().message;
         farm = std::move(*opened);
     }
@@ -259,6 +260,68 @@ TEST_F(FarmTest, ALostResultIsBakedAgainOnResubmit) {
     EXPECT_EQ(again.row.sectors_cached, 4 - std::count(before.begin(), before.end(), before[2]));
     EXPECT_EQ(results(again.row.id), before);
     EXPECT_EQ(farm->blobs().get(before[2]).value(), bytes);
+}
+
+// Another file of the same content, and one of other content.
+TEST_F(FarmTest, AnotherMapFindsWhatStillHolds) {
+    const std::string gltf = ground_gltf(128);
+    expect_succeeded(wait(submit(quick(create(gltf)->id)).row.id), 4);
+    const PlanView same = farm->plan_job(quick(create(gltf + " ")->id)).value();
+    EXPECT_EQ(same.plan.count(bake::Verdict::hit), 4);
+    const Digest raised = create(ground_gltf(128, 1))->id;
+    const PlanView other = farm->plan_job(quick(raised)).value();
+    EXPECT_EQ(other.plan.count(bake::Verdict::rebake), 4);
+    EXPECT_GT(other.seconds, 0);
+    ASSERT_EQ(other.plan.changes.size(), 1u);
+    for (const PlannedSector& planned : other.plan.sectors) EXPECT_NE(planned.reason.find(other.plan.changes[0].what), std::string::npos) << planned.reason;
+    EXPECT_EQ(wait(submit(quick(raised)).row.id).row.sectors_cached, 0);
+    // And back again, by the results of the first map.
+    const JobView undone = submit(quick(create(gltf + "  ")->id));
+    expect_succeeded(undone, 4);
+    EXPECT_EQ(undone.row.sectors_cached, 4);
+}
+
+TEST_F(FarmTest, ADamagedRecordIsAMissAndIsTold) {
+    const Digest map = create(ground_gltf(128))->id;
+    wait(submit(quick(map)).row.id);
+    // All that is no sector file and no input.
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(data() + "/blobs/objects")) {
+        if (!entry.is_regular_file()) continue;
+        std::ifstream file(entry.path(), std::ios::binary);
+        char first[4] = {};
+        file.read(first, 4);
+        if (std::memcmp(first, "\x28\xB5\x2F\xFD", 4) == 0) std::ofstream(entry.path(), std::ios::binary) << "damaged";
+    }
+    const Digest raised = create(ground_gltf(128, 1))->id;
+    const JobView job = submit(quick(raised));
+    ASSERT_FALSE(job.warnings.empty());
+    EXPECT_NE(job.warnings[0].find("cannot be used"), std::string::npos) << job.warnings[0];
+    expect_succeeded(wait(job.row.id), 4);
+}
+
+TEST_F(FarmTest, TheCacheKeepsToItsLimit) {
+    const Digest map = create(ground_gltf(512))->id;
+    const JobView first = wait(submit(quick(map)).row.id);
+    const CacheView all = farm->cache().value();
+    EXPECT_EQ(all.counts.results, 64);
+    EXPECT_EQ(all.counts.baked, 64);
+    farm.reset();
+    open(all.counts.bytes / 2);
+    const JobView second = wait(submit(quick(map, 17)).row.id);
+    expect_succeeded(second, 64);
+    for (const Digest& result : results(second.row.id)) EXPECT_TRUE(farm->blobs().has(result)) << "needed by a job that was running";
+    // When nobody holds them any more, the next sector makes room.
+    JobRequest corner = quick(map, 18);
+    corner.region = Region{1, 1, 1, 1};
+    wait(submit(corner).row.id);
+    const CacheView left = farm->cache().value();
+    EXPECT_LE(left.counts.bytes, left.limit_bytes);
+    EXPECT_GT(left.counts.results, 0);
+    std::size_t kept = 0;
+    for (const Digest& result : results(first.row.id)) kept += farm->blobs().has(result) ? 1u : 0u;
+    EXPECT_EQ(kept, 0u) << "those used longest ago go first";
+    EXPECT_EQ(farm->clear_cache()->counts.results, 0);
+    expect_succeeded(wait(submit(quick(map)).row.id), 64);
 }
 
 // The case: a job that still runs has counted a sector, another job asks for it anew.

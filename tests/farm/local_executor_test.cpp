@@ -151,7 +151,7 @@ TEST_F(LocalExecutorTest, InspectionsAreAnsweredWhileSectorsWait) {
     executor->wake();
     map::Digest manifest;
     manifest.bytes[5] = 77;
-    auto answer = executor->inspect(manifest);
+    auto answer = executor->ask(InspectRequest{0, manifest});
     ASSERT_EQ(answer.wait_for(long_enough), std::future_status::ready);
     const Outcome outcome = answer.get();
     ASSERT_TRUE(std::holds_alternative<InspectAnswer>(outcome));
@@ -164,7 +164,7 @@ TEST_F(LocalExecutorTest, AMapThatKillsTheWorkerFailsWithAReason) {
     map::Digest manifest;
     manifest.bytes[0] = fake::deadly_map;
     for (int n = 0; n < 10; ++n) add(fake::good);
-    auto answer = executor->inspect(manifest);
+    auto answer = executor->ask(InspectRequest{0, manifest});
     ASSERT_EQ(answer.wait_for(long_enough), std::future_status::ready);
     const Outcome outcome = answer.get();
     ASSERT_TRUE(std::holds_alternative<FailureAnswer>(outcome));
@@ -178,7 +178,7 @@ TEST_F(LocalExecutorTest, AnInspectionThatMustWaitCostsNoTime) {
     for (int n = 0; n < 3; ++n) add(fake::silent);  // the window is full, for ever
     executor->wake();
     std::this_thread::sleep_for(300ms);
-    auto answer = executor->inspect({});
+    auto answer = executor->ask(InspectRequest{0, {}});
     const std::clock_t before = std::clock();
     EXPECT_EQ(answer.wait_for(500ms), std::future_status::timeout);
     EXPECT_LT(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC, 0.1);  // 0.2 to 0.5 when the thread spins
@@ -191,7 +191,7 @@ TEST_F(LocalExecutorTest, TheDestructorAnswersPendingInspections) {
     map::Digest silent;
     silent.bytes[0] = fake::silent_map;
     std::vector<std::future<Outcome>> answers;
-    for (int n = 0; n < 6; ++n) answers.push_back(executor->inspect(silent));
+    for (int n = 0; n < 6; ++n) answers.push_back(executor->ask(InspectRequest{0, silent}));
     std::this_thread::sleep_for(100ms);
     executor.reset();
     for (auto& answer : answers) {
@@ -212,7 +212,7 @@ TEST_F(LocalExecutorTest, StopWaitsForWhatIsInFlightAndStartsNothing) {
     const std::lock_guard lock(mutex);
     EXPECT_EQ(outcomes.size(), 3u);  // the window
     EXPECT_EQ(queue.size(), 17u);
-    auto refused = executor->inspect({});
+    auto refused = executor->ask(InspectRequest{0, {}});
     ASSERT_EQ(refused.wait_for(0s), std::future_status::ready);
 }
 

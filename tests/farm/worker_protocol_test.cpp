@@ -27,6 +27,32 @@ TEST(WorkerProtocol, RequestsComeBackAsTheyWere) {
     EXPECT_EQ(inspect.manifest, some_digest);
 }
 
+TEST(WorkerProtocol, AssessmentsComeBackAsTheyWere) {
+    const map::Digest other = map::digest_of(test::bytes_of("other"));
+    AssessRequest request{4, some_digest, bake_request().settings, {{{1, -2}, {{some_digest, other}, {other, some_digest}}}, {{3, 4}, {}}}};
+    request.settings.tolerance = 0.1f;
+    const auto back = std::get<AssessRequest>(decode_request(encode(WorkerRequest(request))).value());
+    EXPECT_EQ(back.manifest, some_digest);
+    EXPECT_EQ(back.settings, request.settings);
+    ASSERT_EQ(back.sectors.size(), 2u);
+    EXPECT_EQ(back.sectors[0].sector, (map::SectorCoordinate{1, -2}));
+    ASSERT_EQ(back.sectors[0].candidates.size(), 2u);
+    EXPECT_EQ(back.sectors[0].candidates[1].footprint, other);
+    EXPECT_EQ(back.sectors[0].candidates[1].inventory, some_digest);
+
+    AssessAnswer answer;
+    answer.sectors = {{bake::Verdict::near_hit, 1, 0.1f, "why"}, {bake::Verdict::rebake, 0, 0, "because"}};
+    answer.changes = {{"a tree moved", {{1, 2, 3}, {4, 5, 6.5f}}}};
+    answer.warnings = {"lost"};
+    const auto given = std::get<AssessAnswer>(decode_answer(encode(WorkerAnswer{9, answer})).value().what);
+    ASSERT_EQ(given.sectors.size(), 2u);
+    EXPECT_EQ(std::tuple(given.sectors[0].verdict, given.sectors[0].candidate, given.sectors[0].bound, given.sectors[0].reason), std::tuple(bake::Verdict::near_hit, 1u, 0.1f, "why"));
+    ASSERT_EQ(given.changes.size(), 1u);
+    EXPECT_EQ(given.changes[0].bounds.high, glm::vec3(4, 5, 6.5f));
+    EXPECT_EQ(given.warnings, answer.warnings);
+    EXPECT_FALSE(decode_answer(R"({"id":1,"verdicts":[[3,0,0,""]],"changes":[],"warnings":[]})"));
+}
+
 TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
     const auto round = [](decltype(WorkerAnswer::what) what) {
         const std::string text = encode(WorkerAnswer{9, std::move(what)});
@@ -41,7 +67,7 @@ TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
     const auto failure = std::get<FailureAnswer>(round(FailureAnswer{"two\nlines, \"quotes\"", true}));
     EXPECT_EQ(failure.sentence, "two\nlines, \"quotes\"");
     EXPECT_TRUE(failure.may_retry);
-    const auto inspected = std::get<InspectAnswer>(round(InspectAnswer{some_digest, {{1, -2}, {3, 4}}, 5, 6, {"warned"}}));
+    const auto inspected = std::get<InspectAnswer>(round(InspectAnswer{some_digest, map::digest_of(test::bytes_of("inventory")), {{1, -2}, {3, 4}}, 5, 6, {"warned"}}));
     EXPECT_EQ(inspected.content, some_digest);
     EXPECT_EQ(inspected.sectors, (std::vector<map::SectorCoordinate>{{1, -2}, {3, 4}}));
     EXPECT_EQ(std::tuple(inspected.object_count, inspected.triangle_count), std::tuple(5, 6));

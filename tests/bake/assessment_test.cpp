@@ -1,0 +1,227 @@
+// What an assessment promises, against bakes of both maps: a hit has the same bytes, a near hit lies within its bound.
+#include "bakerd/bake/assessment.h"
+
+#include "bakerd/bake/sector_bake.h"
+#include "tests/bake/worlds.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+namespace drtv::test {
+namespace {
+
+// A yard of 3 x 3 sectors that can be edited: everything in it by name.
+struct Yard {
+    struct Thing {
+        std::string name, role;
+        int mesh = 0;
+        glm::dvec3 at{};
+    };
+    std::vector<Thing> things;
+    std::vector<glm::dvec3> lamps, probes;
+    std::vector<glm::vec4> colours = {{0.2f, 0.4f, 0.1f, 1}, {0.5f, 0.45f, 0.4f, 1}, {0.1f, 0.3f, 0.05f, 1}};
+    float crown_m = 1.5f;
+    double lamp_candela = 300;
+
+    explicit Yard(unsigned seed, bool lit) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> place(-60, 124);
+        for (int n = 0; n < 14; ++n) things.push_back({"block_" + std::to_string(n), "", 1, {place(random), -1, -place(random)}});
+        for (int n = 0; n < 40; ++n) things.push_back({"tree_" + std::to_string(n), "vegetation", 2, {place(random), 0, -place(random)}});
+        if (lit) lamps = {{10, 3, -10}, {50, 2.5, -90}};
+        probes = {{30, 2, -30}};
+    }
+
+    [[nodiscard]] GltfBuilder build() const {
+        GltfBuilder b;
+        std::vector<int> materials;
+        for (const glm::vec4& colour : colours) materials.push_back(b.add_material({.colour = colour}));
+        const std::vector<int> meshes = {b.add_mesh(ground(130), materials[0]), b.add_mesh(box({-2, 0, -2}, {2, 5, 2}), materials[1]), b.add_mesh(box({-crown_m, 1, -crown_m}, {crown_m, 5, crown_m}), materials[2])};
+        b.add_node({.mesh = meshes[0], .name = "ground"});
+        for (const Thing& thing : things) b.add_node({.mesh = meshes[static_cast<std::size_t>(thing.mesh)], .translation = thing.at, .name = thing.name, .role = thing.role});
+        for (const glm::dvec3& lamp : lamps) b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", lamp_candela}}), .translation = lamp, .name = "lamp"});
+        for (const glm::dvec3& probe : probes) b.add_node({.translation = probe, .name = "probe", .role = "probe"});
+        return b;
+    }
+};
+
+bake::Settings settings_of_yard(std::uint32_t rays, bool local) {
+    bake::Settings settings;
+    settings.rays = rays;
+    settings.reach_m = 90;
+    settings.local_transfer = local;
+    settings.local_rays = 32;
+    return settings;
+}
+
+// The largest difference of a coefficient, as a share of its range; more than any where probes stand elsewhere.
+float error_between(const Sector& a, const Sector& b) {
+    if (a.probes.size() != b.probes.size() || a.grid != b.grid) return 9;
+    float worst = 0;
+    const auto differ = [&](float x, float y, float range) { worst = std::max(worst, std::abs(x - y) / range); };
+    for (std::size_t p = 0; p < a.probes.size(); ++p) {
+        if (a.probes[p].position != b.probes[p].position) return 9;
+        for (std::size_t k = 0; k < basis_count; ++k) {
+            differ(decode_fixed(a.probes[p].sky_visibility[k], sky_visibility_scale), decode_fixed(b.probes[p].sky_visibility[k], sky_visibility_scale), 1);
+            for (std::size_t c = 0; c < channel_count; ++c) {
+                for (std::size_t i = 0; i < sh_count; ++i) differ(decode_fixed(a.probes[p].transfer[c][k][i], transfer_scale), decode_fixed(b.probes[p].transfer[c][k][i], transfer_scale), i == 0 ? 0.2821f : 0.9772f);
+            }
+        }
+        if (a.static_irradiance.empty() && b.static_irradiance.empty()) continue;
+        const auto irradiance = [p](const Sector& sector, std::size_t c, std::size_t k) {
+            return sector.static_irradiance.empty() ? 0.0f : decode_fixed(sector.static_irradiance[p].codes[c][k], scale_of_exponent(sector.static_irradiance[p].exponent));
+        };
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            for (std::size_t k = 0; k < basis_count; ++k) differ(irradiance(a, c, k), irradiance(b, c, k), bake::static_irradiance_range);
+        }
+    }
+    return worst;
+}
+
+struct Tally {
+    int hits = 0, near_hits = 0, rebakes = 0, same = 0;
+};
+
+// Bakes both and holds every verdict against them.
+Tally check(const Yard& before, const Yard& after, const bake::Settings& settings, float tolerance, const std::string& what) {
+    const trace::FloatMode float_mode;
+    const auto old_world = open_world(before.build()), new_world = open_world(after.build());
+    const auto changes = bake::changes_between(bake::take_inventory(*old_world), bake::take_inventory(*new_world));
+    Tally tally;
+    for (std::int32_t j = -1; j <= 1; ++j) {
+        for (std::int32_t i = -1; i <= 1; ++i) {
+            const bake::BakedSector was = bake::bake_sector(*old_world, {i, j}, settings).value(), is = bake::bake_sector(*new_world, {i, j}, settings).value();
+            const auto footprint = bake::decode_footprint(bake::encode_footprint(was.footprint)).value();
+            const bake::Assessment assessment = bake::assess(footprint, settings, changes, tolerance, *new_world);
+            const bool same = encoded(was.sector) == encoded(is.sector);
+            tally.same += same ? 1 : 0;
+            switch (assessment.verdict) {
+                case bake::Verdict::hit:
+                    ++tally.hits;
+                    EXPECT_TRUE(same) << what << ": sector (" << i << ", " << j << ") is said to be the same";
+                    break;
+                case bake::Verdict::near_hit:
+                    ++tally.near_hits;
+                    EXPECT_LE(assessment.bound, tolerance);
+                    EXPECT_LE(error_between(was.sector, is.sector), assessment.bound + 0x1p-13f) << what << ": sector (" << i << ", " << j << "), " << bake::describe(assessment, changes);
+                    break;
+                case bake::Verdict::rebake:
+                    ++tally.rebakes;
+                    EXPECT_FALSE(bake::describe(assessment, changes).empty());
+                    break;
+            }
+        }
+    }
+    return tally;
+}
+
+std::string edit(Yard& yard, std::mt19937& random) {
+    std::uniform_real_distribution<double> shift(-4, 4), place(-60, 124), share(0.5, 1);
+    Yard::Thing& thing = yard.things[random() % yard.things.size()];
+    switch (random() % 9) {
+        case 0:
+        case 1: thing.at += glm::dvec3(shift(random), 0, shift(random)); return thing.name + " moved";
+        case 2: {
+            const std::string name = thing.name;
+            yard.things.erase(yard.things.begin() + (&thing - yard.things.data()));
+            return name + " deleted";
+        }
+        case 3: yard.things.push_back({"new", "vegetation", 2, {place(random), 0, -place(random)}}); return "a tree added";
+        case 4: yard.colours[random() % 3].y *= static_cast<float>(share(random)); return "a material recoloured";
+        case 5: thing.role = thing.role.empty() ? "vegetation" : ""; return thing.name + " has another role";
+        case 6: yard.crown_m *= 1.1f; return "the trees' mesh edited";
+        case 7:
+            if (yard.lamps.empty()) return "nothing";
+            yard.lamps[0].x += 0.5;
+            return "a lamp moved";
+        default: yard.probes.push_back({place(random), 2, -place(random)}); return "a probe added";
+    }
+}
+
+class RandomEdits : public testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomEdits, HoldWhatIsPromised) {
+    std::mt19937 random(GetParam());
+    Yard yard(GetParam(), GetParam() % 2 == 0);
+    const bake::Settings settings = settings_of_yard(64, GetParam() % 4 == 1);
+    for (int n = 0; n < 4; ++n) {
+        Yard edited = yard;
+        const std::string what = "seed " + std::to_string(GetParam()) + ", edit " + std::to_string(n) + ": " + edit(edited, random);
+        check(yard, edited, settings, n % 2 == 0 ? 0 : 1 / 32.0f, what);
+        yard = edited;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomEdits, testing::Range(1u, 9u));
+
+TEST(Assessment, TheSameMapIsAllHits) {
+    const Yard yard(3, true);
+    Yard renamed = yard;
+    for (auto& thing : renamed.things) thing.name += "_renamed";
+    EXPECT_EQ(check(yard, renamed, settings_of_yard(64, false), 0, "renamed").hits, 9);
+}
+
+TEST(Assessment, WhatLiesBeyondTheReachIsAHit) {
+    const Yard yard(3, false);
+    Yard far = yard;
+    far.things.push_back({"far", "", 1, {125, 0, 60}});  // world (125, -60)
+    const Tally tally = check(yard, far, settings_of_yard(64, false), 0, "far");
+    EXPECT_GE(tally.hits, 3);
+    EXPECT_GE(tally.rebakes, 1);
+}
+
+TEST(Assessment, ToleranceLetsAFarTreeBe) {
+    const Yard yard(3, false);
+    Yard moved = yard;
+    moved.things.back().at = {-62, 0, 62};
+    bake::Settings settings = settings_of_yard(1024, false);
+    const Tally exact = check(yard, moved, settings, 0, "exact"), near = check(yard, moved, settings, 1 / 32.0f, "near");
+    EXPECT_EQ(exact.near_hits, 0);
+    EXPECT_GT(near.near_hits, 0);
+    EXPECT_LT(near.rebakes, exact.rebakes);
+}
+
+// Each of these shows in the file, though no ray need cross anything.
+TEST(Assessment, LampsAndProbesOfTheNextSectorCount) {
+    const Yard yard(3, true);
+    Yard lamp = yard, probe = yard;
+    lamp.lamp_candela = 400;
+    EXPECT_GE(check(yard, lamp, settings_of_yard(64, false), 1 / 32.0f, "lamp").rebakes, 8);
+    probe.probes.push_back({66, 2, -32});  // world (66, 32): 2 m beyond the middle sector's border
+    EXPECT_GE(check(yard, probe, settings_of_yard(64, false), 1 / 32.0f, "probe").rebakes, 2);
+}
+
+TEST(Inventory, ComesBackAsItWasStored) {
+    const bake::Inventory inventory = bake::take_inventory(*open_world(Yard(5, true).build()));
+    EXPECT_EQ(inventory.items.size(), 1u + 14 + 40 + 2 + 1);
+    const std::vector<std::uint8_t> bytes = bake::encode_inventory(inventory);
+    const auto back = bake::decode_inventory(bytes);
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(bake::changes_between(inventory, *back).empty());
+    for (std::size_t n = 0; n < inventory.items.size(); ++n) EXPECT_EQ(back->items[n].name, inventory.items[n].name);
+    for (std::size_t size = 0; size < bytes.size(); size += 53) EXPECT_FALSE(bake::decode_inventory(std::span(bytes).first(size)));
+}
+
+TEST(Inventory, ChangesAreNamed) {
+    const Yard yard(5, true);
+    const auto change_of = [&](const std::function<void(Yard&)>& edit_it) {
+        Yard other = yard;
+        edit_it(other);
+        const auto changes = bake::changes_between(bake::take_inventory(*open_world(yard.build())), bake::take_inventory(*open_world(other.build())));
+        std::string text;
+        for (const bake::Change& change : changes) text += bake::describe(change) + ";";
+        return text;
+    };
+    EXPECT_EQ(change_of([](Yard&) {}), "");
+    EXPECT_EQ(change_of([](Yard& y) { y.things[0].at.x += 1; }), "block_0 moved;");
+    EXPECT_EQ(change_of([](Yard& y) { y.things[0].role = "vegetation"; }), "block_0 changed;");
+    EXPECT_EQ(change_of([](Yard& y) { y.things.erase(y.things.begin()); }), "block_0 was deleted;");
+    EXPECT_EQ(change_of([](Yard& y) { y.things.push_back({"hut", "", 1, {}}); }), "hut was added;");
+    EXPECT_EQ(change_of([](Yard& y) { y.lamps[1].x += 1; }), "lamp moved;");
+    EXPECT_EQ(change_of([](Yard& y) { y.probes.clear(); }), "probe was deleted;");
+}
+
+}  // namespace
+}  // namespace drtv::test

@@ -1,0 +1,141 @@
+// The record of what a sector depends on: nothing that a ray crosses is missing, and it survives being stored.
+#include "bakerd/bake/footprint.h"
+
+#include "bakerd/bake/footprint_recorder.h"
+#include "bakerd/bake/sector_bake.h"
+#include "tests/bake/worlds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace drtv::test {
+namespace {
+
+TEST(WeightCode, RoundsUpByAtMostHalfAnOctave) {
+    EXPECT_EQ(bake::weight_code(0), 0);
+    EXPECT_EQ(bake::weight_of_code(0), 0.0f);
+    std::uint8_t before = 0;
+    for (float weight = 0x1p-20f; weight < 2; weight *= 1.01f) {
+        const std::uint8_t code = bake::weight_code(weight);
+        EXPECT_GE(code, before);
+        EXPECT_LE(code, bake::most_weight_code);
+        if (weight <= 1) {
+            EXPECT_GE(bake::weight_of_code(code), weight);
+        }
+        if (weight >= 0x1p-14f && code < bake::most_weight_code) {
+            EXPECT_LE(bake::weight_of_code(code), weight * 1.51f);
+        }
+        before = code;
+    }
+    for (std::uint8_t code = 0; code < bake::most_weight_code; ++code) EXPECT_EQ(bake::weight_code(bake::weight_of_code(code)), code);
+}
+
+TEST(FootprintGrid, CoversTheDistanceAndTheHeights) {
+    for (const float distance_m : {10.0f, 560.0f, 8192.0f}) {
+        for (const float top_m : {5.0f, 700.0f, 8192.0f}) {
+            const bake::FootprintGrid grid = bake::footprint_grid({-3, 7}, distance_m, -20, top_m);
+            EXPECT_LE(grid.low().x, -3 * 64 - distance_m);
+            EXPECT_GE(grid.high().x, -2 * 64 + distance_m);
+            EXPECT_LE(grid.low().y, 7 * 64 - distance_m);
+            EXPECT_GE(grid.high().y, 8 * 64 + distance_m);
+            EXPECT_LT(grid.low().z, -20);
+            EXPECT_GT(grid.high().z, top_m);
+            EXPECT_LE(grid.layers, 64);
+            EXPECT_LE(grid.columns, 80);
+        }
+    }
+}
+
+// Whatever point of a ray is asked for, a cell within half a step beside it is marked.
+TEST(FootprintRecorder, NoPointOfARayIsMissing) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> place(-100, 160), height(-30, 60), along(0, 1), sphere(-1, 1);
+    const bake::FootprintGrid grid = bake::footprint_grid({0, 0}, 200, -10, 40);
+    const float half_m = static_cast<float>(grid.cell_m) * bake::footprint_step / 2 + 0.01f;
+    for (int n = 0; n < 300; ++n) {
+        bake::FootprintRecorders recorders(grid);
+        bake::FootprintRecorder& recorder = recorders.of_this_thread();
+        recorder.begin();
+        glm::vec3 direction(sphere(random), sphere(random), n % 3 == 0 ? 0.0f : sphere(random));
+        if (n % 7 == 0) direction = {0, 0, 1};
+        if (glm::length(direction) < 0.1f) continue;
+        const trace::Ray ray{{place(random), place(random), height(random)}, glm::normalize(direction), 90};
+        if (n % 2 == 0) recorder.path(ray, ray.far_m, 0.01f, 3);
+        else recorder.lone(ray, 0.01f);
+        bake::Footprint footprint;
+        recorders.store(footprint);
+        for (int k = 0; k < 200; ++k) {
+            const glm::vec3 point = ray.origin + ray.direction * (ray.far_m * along(random));
+            if (point.z <= grid.low().z + 0.01f || point.z >= grid.high().z - 0.01f) continue;
+            bool marked = false;
+            for (const float dx : {-half_m, 0.0f, half_m}) {
+                for (const float dy : {-half_m, 0.0f, half_m}) {
+                    for (const float dz : {-0.01f, 0.01f}) {
+                        const glm::ivec3 cell(glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
+                        if (cell.x < 0 || cell.y < 0 || cell.z < 0 || cell.x >= grid.columns || cell.y >= grid.rows || cell.z >= grid.layers) continue;
+                        const bool crossed = (footprint.crossed[grid.column(cell.x, cell.y)] >> cell.z & 1u) != 0;
+                        marked |= crossed && footprint.weights[grid.block(cell.x, cell.y, cell.z)] == bake::weight_code(0.01f);
+                    }
+                }
+            }
+            EXPECT_TRUE(marked) << "ray " << n << " at " << point.x << " " << point.y << " " << point.z;
+        }
+    }
+}
+
+TEST(FootprintRecorder, SharesAddUpInAProbeAndTheLargestProbeCounts) {
+    const bake::FootprintGrid grid = bake::footprint_grid({0, 0}, 100, 0, 20);
+    bake::FootprintRecorders recorders(grid);
+    bake::FootprintRecorder& recorder = recorders.of_this_thread();
+    const trace::Ray up{{32, 32, 5}, {0, 0, 1}, 2};
+    recorder.begin();
+    for (std::uint32_t path = 0; path < 4; ++path) {
+        recorder.path(up, 2, 0x1p-10f, path);
+        recorder.path(up, 2, 0x1p-11f, path);  // its later part, through the same block
+    }
+    recorder.begin();
+    recorder.path(up, 2, 0x1p-9f, 0);
+    recorder.lone(up, 0x1p-13f);
+    bake::Footprint footprint;
+    recorders.store(footprint);
+    const glm::ivec3 cell(glm::floor((up.origin - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
+    EXPECT_EQ(bake::weight_of_code(footprint.weights[grid.block(cell.x, cell.y, cell.z)]), 0x1p-8f);
+}
+
+bake::Footprint baked_footprint() {
+    GltfBuilder b;
+    b.add_node({.mesh = b.add_mesh(ground(150), b.add_material({.colour = {0.4f, 0.5f, 0.3f, 1}}))});
+    b.place(box({8, 0, -12}, {12, 6, -8}));
+    b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 40}}), .translation = glm::dvec3(20, 3, -20)});
+    bake::Settings settings;
+    settings.rays = 64;
+    settings.reach_m = 60;
+    return bake::bake_sector(*open_world(b), {0, 0}, settings).value().footprint;
+}
+
+TEST(Footprint, ComesBackAsItWasStored) {
+    const bake::Footprint footprint = baked_footprint();
+    EXPECT_FALSE(footprint.probes.empty());
+    EXPECT_FALSE(footprint.solid_tests.empty());
+    EXPECT_GT(footprint.static_gain, 0);
+    const auto back = bake::decode_footprint(bake::encode_footprint(footprint));
+    ASSERT_TRUE(back);
+    EXPECT_EQ(*back, footprint);
+}
+
+TEST(Footprint, OddBytesAreNoRecord) {
+    const std::vector<std::uint8_t> bytes = bake::encode_footprint(baked_footprint());
+    EXPECT_FALSE(bake::decode_footprint({}));
+    for (std::size_t size = 0; size < bytes.size(); size += 97) EXPECT_FALSE(bake::decode_footprint(std::span(bytes).first(size)));
+    std::mt19937 random(3);
+    for (int n = 0; n < 500; ++n) {
+        std::vector<std::uint8_t> broken = bytes;
+        broken[random() % broken.size()] = static_cast<std::uint8_t>(random());
+        static_cast<void>(bake::decode_footprint(broken));  // anything but a crash
+    }
+}
+
+}  // namespace
+}  // namespace drtv::test
