@@ -47,8 +47,9 @@ struct Yard {
     }
 };
 
-bake::Settings settings_of_yard(std::uint32_t rays, bool local) {
+bake::Settings settings_of_yard(std::uint32_t rays, bool local, std::uint32_t bounces = 3) {
     bake::Settings settings;
+    settings.bounces = bounces;
     settings.rays = rays;
     settings.reach_m = 90;
     settings.local_transfer = local;
@@ -145,7 +146,7 @@ class RandomEdits : public testing::TestWithParam<unsigned> {};
 TEST_P(RandomEdits, HoldWhatIsPromised) {
     std::mt19937 random(GetParam());
     Yard yard(GetParam(), GetParam() % 2 == 0);
-    const bake::Settings settings = settings_of_yard(64, GetParam() % 4 == 1);
+    const bake::Settings settings = settings_of_yard(64, GetParam() % 4 == 1, GetParam() % 3 == 0 ? 0 : 3);
     for (int n = 0; n < 4; ++n) {
         Yard edited = yard;
         const std::string what = "seed " + std::to_string(GetParam()) + ", edit " + std::to_string(n) + ": " + edit(edited, random);
@@ -170,6 +171,37 @@ TEST(Assessment, WhatLiesBeyondTheReachIsAHit) {
     const Tally tally = check(yard, far, settings_of_yard(64, false), 0, "far");
     EXPECT_GE(tally.hits, 3);
     EXPECT_GE(tally.rebakes, 1);
+}
+
+// Without bounces only first rays cross it.
+TEST(Assessment, FirstRaysCountByThemselves) {
+    Yard yard(3, false);
+    yard.things.clear();
+    Yard high = yard;
+    high.things.push_back({"cloud", "", 1, {98, 25, -98}});  // world (98, 98), 25 m up, in the north-eastern sector
+    const Tally tally = check(yard, high, settings_of_yard(256, false, 0), 0, "cloud");
+    EXPECT_GT(9 - tally.same, 3);
+    EXPECT_LE(tally.hits, tally.same);
+}
+
+// No ray ever goes there, and yet a probe comes to stand in a cellar that is dug.
+TEST(Assessment, PlacementLooksWhereNoRayGoes) {
+    const auto cellar = [](bool dug) {
+        GltfBuilder b;
+        const int both_sides = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}, .double_sided = true});
+        b.add_node({.mesh = b.add_mesh(ground(150), both_sides), .name = "ground"});
+        if (dug) b.add_node({.mesh = b.add_mesh(box({10, -10, -18}, {22, -9, -6})), .name = "floor"});
+        return open_world(b);
+    };
+    const trace::FloatMode float_mode;
+    const bake::Settings settings = settings_of_yard(64, false);
+    const auto before = cellar(false), after = cellar(true);
+    const auto changes = bake::changes_between(bake::take_inventory(*before), bake::take_inventory(*after));
+    const bake::BakedSector was = bake::bake_sector(*before, {0, 0}, settings).value(), is = bake::bake_sector(*after, {0, 0}, settings).value();
+    ASSERT_GT(is.sector.probes.size(), was.sector.probes.size());
+    const bake::Assessment assessment = bake::assess(was.footprint, settings, changes, 1 / 32.0f, *after);
+    EXPECT_EQ(assessment.verdict, bake::Verdict::rebake);
+    EXPECT_EQ(bake::describe(assessment, changes), "floor was added: it may move probes");
 }
 
 TEST(Assessment, ToleranceLetsAFarTreeBe) {

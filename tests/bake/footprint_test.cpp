@@ -104,6 +104,58 @@ TEST(FootprintRecorder, SharesAddUpInAProbeAndTheLargestProbeCounts) {
     EXPECT_EQ(bake::weight_of_code(footprint.weights[grid.block(cell.x, cell.y, cell.z)]), 0x1p-8f);
 }
 
+// Every ray but the first of each path, to lamps too, is in the record for all of its way.
+TEST(FootprintRecorder, AllLaterRaysOfAProbeAreNoted) {
+    GltfBuilder b;
+    const int leaf = b.add_material({.colour = {0.3f, 0.6f, 0.2f, 1}, .double_sided = true});
+    b.add_node({.mesh = b.add_mesh(ground(90), b.add_material({.colour = {0.6f, 0.6f, 0.6f, 1}}))});
+    b.place(box({8, 0, -22}, {12, 9, -8}));
+    b.add_node({.mesh = b.add_mesh(quad({-20, 2, 5}, {-4, 2, 5}, {-4, 9, 9}, {-20, 9, 9}), leaf), .role = "vegetation"});
+    for (const double x : {-12.0, 30.0}) b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 9000}}), .translation = glm::dvec3(x, 4, -14)});
+    const auto world = open_world(b);
+    const trace::FloatMode float_mode;
+    constexpr float reach_m = 150;
+    const auto scene = world->scene_for({0, 0}, 250);
+    const bake::FootprintGrid grid = bake::footprint_grid({0, 0}, 250, scene->bounds().low.z, scene->bounds().high.z);
+    bake::FootprintRecorders recorders(grid);
+    recorders.of_this_thread().begin();
+    bake::RayLog log;
+    const glm::vec3 probe(3, 4, 1.5f);
+    const bake::SampleTable samples(16, bake::sample_dimensions(3, true));
+    static_cast<void>(bake::integrate_probe(*scene, world->lights(), glm::ivec3(probe * 1024.0f), samples, {3, reach_m, 0}, {&recorders.of_this_thread(), &log}));
+    bake::Footprint footprint;
+    recorders.store(footprint);
+    const float half_m = static_cast<float>(grid.cell_m) * bake::footprint_step / 2 + 0.01f;
+    int later = 0, missing = 0;
+    const auto look = [&](const trace::Ray& ray, float length_m) {
+        ++later;
+        for (float at = 0; at <= length_m; at += 0.9f) {
+            const glm::vec3 point = ray.origin + ray.direction * at;
+            if (point.z < grid.low().z || point.z >= grid.high().z) continue;
+            bool marked = false;
+            for (const float dx : {-half_m, 0.0f, half_m}) {
+                for (const float dy : {-half_m, 0.0f, half_m}) {
+                    for (const float dz : {-0.01f, 0.0f, 0.01f}) {
+                        const glm::ivec3 cell(glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
+                        marked |= (footprint.crossed[grid.column(cell.x, cell.y)] >> cell.z & 1u) != 0;
+                    }
+                }
+            }
+            missing += marked ? 0 : 1;
+        }
+    };
+    for (const trace::Ray& ray : log.paths) {
+        if (ray.origin == probe) continue;
+        const auto hit = scene->closest(ray);
+        look(ray, hit ? hit->distance_m : ray.far_m);
+    }
+    const int paths = later;
+    for (const trace::Ray& ray : log.shadows) look(ray, ray.far_m);
+    EXPECT_GE(paths, 8);
+    EXPECT_GT(later - paths, 1);
+    EXPECT_EQ(missing, 0);
+}
+
 bake::Footprint baked_footprint() {
     GltfBuilder b;
     b.add_node({.mesh = b.add_mesh(ground(150), b.add_material({.colour = {0.4f, 0.5f, 0.3f, 1}}))});
