@@ -107,7 +107,7 @@ std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
         std::vector<std::int32_t> differences;
         std::int32_t before = 0;
         for (const SolidTest& test : footprint.solid_tests) {
-            differences.push_back(test.position[axis] - before);
+            differences.push_back(static_cast<std::int32_t>(static_cast<std::uint32_t>(test.position[axis]) - static_cast<std::uint32_t>(before)));
             before = test.position[axis];
         }
         writer.add_all(differences);
@@ -148,10 +148,10 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     const std::size_t blocks = footprint.grid.block_count();
     if (footprint.weights.size() != blocks + blocks % 2) return std::nullopt;
     footprint.weights.resize(blocks);
-    placement::Position position(0);
+    glm::uvec3 position(0);  // odd bytes may wrap around
     for (std::size_t n = 0; n < to_flip.size(); ++n) {
-        position += placement::Position(differences[0][n], differences[1][n], differences[2][n]);
-        footprint.solid_tests.push_back({position, to_flip[n]});
+        position += glm::uvec3(glm::ivec3(differences[0][n], differences[1][n], differences[2][n]));
+        footprint.solid_tests.push_back({placement::Position(position), to_flip[n]});
     }
     return footprint;
 }
