@@ -220,8 +220,8 @@ class Assessor {
             if (const std::optional<Cause> cause = certain(**item)) return {unbounded, *cause};
             if ((*item)->kind == ItemKind::fixed || (*item)->kind == ItemKind::vegetation) boxes.push_back(grown((*item)->bounds, glm::vec3(slack_m((*item)->bounds, footprint_.reach_m))));
         }
-        if (boxes.empty() || !within_reach(boxes)) return {flips_placement(boxes) ? unbounded : 0, Cause::placement};
         if (flips_placement(boxes)) return {unbounded, Cause::placement};
+        if (!within_reach(boxes)) return {};
         const float gain = std::max(1.0f, footprint_.static_gain), later = later_share(boxes) * gain;
         // No need to look for more than what settles it.
         const float share = later > tolerance_ ? 0 : first_rays().share_of(boxes);
@@ -230,7 +230,6 @@ class Assessor {
 
     // What matters wherever rays went.
     [[nodiscard]] std::optional<Cause> certain(const Item& item) const {
-        const float infinity = std::numeric_limits<float>::infinity();
         const auto within = [&](float metres) { return overlap(item.bounds, grown(square_, {metres, metres, 0})); };
         switch (item.kind) {
             case ItemKind::fixed:
@@ -254,11 +253,9 @@ class Assessor {
                 // As far as candidates stand and may be moved, and keep their distance.
                 if (within(footprint_.placement_m + 2 * footprint_.min_distance_m)) return Cause::placement;
                 return std::nullopt;
-            case ItemKind::interior: {
-                const Bounds sector{{square_.low.x, square_.low.y, -infinity}, {square_.high.x, square_.high.y, infinity}};
-                if (overlap(item.bounds, grown(sector, glm::vec3(position_unit_m, position_unit_m, 0)))) return Cause::interior;
+            case ItemKind::interior:
+                if (within(position_unit_m)) return Cause::interior;
                 return std::nullopt;
-            }
         }
         return Cause::rays;
     }

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <tuple>
 
@@ -57,7 +56,6 @@ auto order(const Item& item) { return std::tie(item.kind, item.digest); }
 std::vector<Item> only_in(const std::vector<Item>& a, const std::vector<Item>& b) {
     std::vector<Item> only;
     std::ranges::set_difference(a, b, std::back_inserter(only), {}, order, order);
-    std::ranges::stable_sort(only, {}, [](const Item& item) { return std::tie(item.kind, item.name); });
     return only;
 }
 
@@ -81,8 +79,7 @@ Inventory take_inventory(const World& world) {
         inventory.items.push_back({object.role == map::Role::vegetation ? ItemKind::vegetation : ItemKind::fixed, shines, half(object.digest), half(map.meshes[object.mesh].digest), object.bounds, object.name});
     }
     for (const map::Light& light : map.lights) {
-        // Dark ones light nothing (StaticLights).
-        if (!((light.colour.x + light.colour.y + light.colour.z) * light.intensity > 0)) continue;
+        if (!shines(light)) continue;
         const bool sun = light.kind == map::LightKind::directional;
         inventory.items.push_back({sun ? ItemKind::sun : ItemKind::lamp, false, half(light.digest), shape_of_light(light), sun ? map::Bounds() : point(light.position), light.name});
     }

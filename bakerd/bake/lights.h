@@ -58,6 +58,9 @@ struct EmissiveObject {
     [[nodiscard]] const Triangle* find(std::uint32_t primitive, std::uint32_t triangle) const;
 };
 
+// A dark light is none.
+[[nodiscard]] bool shines(const map::Light& light);
+
 // In all objects of the map together.
 [[nodiscard]] std::size_t emissive_triangles(const map::Map& map);
 

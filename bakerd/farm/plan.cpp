@@ -30,12 +30,6 @@ void reuse(PlannedSector& planned, const BakeAnswer& result, float bound) {
 
 std::int64_t Plan::count(bake::Verdict verdict) const { return std::ranges::count(sectors, verdict, &PlannedSector::verdict); }
 
-float Plan::largest_bound() const {
-    float most = 0;
-    for (const PlannedSector& planned : sectors) most = std::max(most, planned.bound);
-    return most;
-}
-
 Digest task_key(const Digest& content, const bake::Settings& settings, map::SectorCoordinate sector) {
     map::Hasher hasher;
     hasher.add_sized(std::string_view("drtv task"));
@@ -61,7 +55,9 @@ Result<Plan> look_up(Database& database, const BlobStore& blobs, const InspectAn
         for (const bake::Settings& asked : {exact, settings}) {
             const auto task = database.task_by_key(task_key(map.content, asked, sector));
             if (!task) return tl::unexpected(task.error());
-            if (!planned.reused && *task && (*task)->state == TaskState::done && blobs.has((*task)->result.result)) reuse(planned, (*task)->result, (*task)->bound);
+            if (!*task || (*task)->state != TaskState::done || !blobs.has((*task)->result.result)) continue;
+            reuse(planned, (*task)->result, (*task)->bound);
+            break;
         }
         if (planned.reused) continue;
         planned.reason = "it was not baked before";

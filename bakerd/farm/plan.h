@@ -28,7 +28,6 @@ struct Plan {
     std::vector<std::string> warnings;
 
     [[nodiscard]] std::int64_t count(bake::Verdict verdict) const;
-    [[nodiscard]] float largest_bound() const;
 };
 
 // What a sector's file depends on, as far as is known before it is baked.
