@@ -104,10 +104,10 @@ Window window_of(const glm::vec3& from, const Bounds& box) {
 class FirstRays {
   public:
     FirstRays(const Footprint& footprint, const SampleTable& samples, const trace::Scene& scene) : footprint_(footprint), samples_(samples), scene_(scene) {
-        for (const Position& position : footprint.probes) {
+        for (const ProbeRecord& record : footprint.probes) {
             Probe& probe = probes_.emplace_back();
-            probe.place = glm::vec3(position) * position_unit_m;
-            probe.shift = digital_shift(position);
+            probe.place = placement::metres(record.position);
+            probe.shift = digital_shift(record.position);
             for (std::uint32_t first = 0; first < samples.count(); first += group_size) {
                 Group& group = probe.groups.emplace_back();
                 for (const std::uint32_t n : members(first / group_size)) {
@@ -121,31 +121,10 @@ class FirstRays {
         }
     }
 
-    // The largest share of a coefficient that rays into one of the boxes have. Above 0 when there are such rays at all. REQUIRES: what changed lies inside the boxes.
-    [[nodiscard]] float share_of(std::span<const Bounds> boxes) const {
-        float most = 0;
-        for (const Probe& probe : probes_) most = std::max(most, share_of(probe, boxes));
-        return most;
-    }
-
-  private:
-    // Samples that start side by side, and what they span of their numbers.
-    static constexpr std::uint32_t group_size = 8;
-    struct Group {
-        float x0 = 1, x1 = 0, y0 = 1, y1 = 0;
-    };
-    struct Probe {
-        glm::vec3 place{};
-        std::array<std::uint32_t, max_sample_dimensions> shift{};
-        std::vector<Group> groups;
-    };
-
-    [[nodiscard]] std::span<const std::uint32_t> members(std::uint32_t group) const {
-        const std::size_t first = std::size_t{group} * group_size;
-        return samples_.side_by_side().subspan(first, std::min<std::size_t>(group_size, samples_.count() - first));
-    }
-
-    [[nodiscard]] float share_of(const Probe& probe, std::span<const Bounds> boxes) const {
+    // The largest share of a coefficient of a probe that rays into one of the boxes have. Above 0 when there are such rays at all. REQUIRES: what changed
+    // lies inside the boxes.
+    [[nodiscard]] float share_of(std::size_t number, std::span<const Bounds> boxes) const {
+        const Probe& probe = probes_[number];
         std::array<float, basis_count> sums{};
         std::vector<Window> windows;
         for (const Bounds& box : boxes) {
@@ -173,6 +152,23 @@ class FirstRays {
         return *std::ranges::max_element(sums) * 4 / static_cast<float>(samples_.count());
     }
 
+  private:
+    // Samples that start side by side, and what they span of their numbers.
+    static constexpr std::uint32_t group_size = 8;
+    struct Group {
+        float x0 = 1, x1 = 0, y0 = 1, y1 = 0;
+    };
+    struct Probe {
+        glm::vec3 place{};
+        std::array<std::uint32_t, max_sample_dimensions> shift{};
+        std::vector<Group> groups;
+    };
+
+    [[nodiscard]] std::span<const std::uint32_t> members(std::uint32_t group) const {
+        const std::size_t first = std::size_t{group} * group_size;
+        return samples_.side_by_side().subspan(first, std::min<std::size_t>(group_size, samples_.count() - first));
+    }
+
     const Footprint& footprint_;
     const SampleTable& samples_;
     const trace::Scene& scene_;
@@ -185,26 +181,24 @@ class Assessor {
         : footprint_(footprint), settings_(settings), tolerance_(footprint.without_bounds ? 0 : tolerance), world_(world), counted_(footprint.grid.block_count(), false), flips_(footprint.solid_tests.size(), 0) {
         const float x = static_cast<float>(footprint.sector.i) * sector_m, y = static_cast<float>(footprint.sector.j) * sector_m, infinity = std::numeric_limits<float>::infinity();
         square_ = {{x, y, -infinity}, {x + sector_m, y + sector_m, infinity}};
+        for (const ProbeRecord& probe : footprint.probes) assessment_.probe_bounds.push_back(probe.bound);
     }
 
     Assessment run(std::span<const Change> changes) {
-        Assessment assessment;
-        for (std::size_t n = 0; n < changes.size(); ++n) {
+        for (std::size_t n = 0; n < changes.size() && !settled(); ++n) {
             const auto [weight, cause] = weigh(changes[n]);
-            if (!(weight > 0)) continue;
-            assessment.bound += weight;
-            if (!assessment.change || weight > assessment.weight) {
-                assessment.change = n;
-                assessment.cause = cause;
-                assessment.weight = weight;
-            }
-            if (assessment.bound > tolerance_) {
-                assessment.verdict = Verdict::rebake;
-                return assessment;
-            }
-            assessment.verdict = Verdict::near_hit;
+            if (!(weight > 0) || (assessment_.change && weight <= assessment_.weight)) continue;
+            assessment_.change = n;
+            assessment_.cause = cause;
+            assessment_.weight = weight;
         }
-        return assessment;
+        for (const float bound : assessment_.probe_bounds) assessment_.bound = std::max(assessment_.bound, bound);
+        if (!assessment_.placement_holds) assessment_.bound = unbounded;
+        assessment_.verdict = assessment_.bound > tolerance_ ? Verdict::rebake : assessment_.bound > 0 ? Verdict::near_hit : Verdict::hit;
+        for (const std::uint32_t flips : flips_) assessment_.flips.push_back(static_cast<std::uint8_t>(std::popcount(flips)));
+        // Local transfer is of all probes together, and a number of rays that follows from what they find is in no record.
+        if (footprint_.without_bounds) assessment_.probe_bounds.clear();
+        return std::move(assessment_);
     }
 
   private:
@@ -213,23 +207,51 @@ class Assessor {
         Cause cause = Cause::rays;
     };
 
+    [[nodiscard]] bool over(float bound) const { return bound > tolerance_; }
+
+    // Nothing can be taken over.
+    [[nodiscard]] bool settled() const { return !assessment_.placement_holds && std::ranges::all_of(assessment_.probe_bounds, [&](float bound) { return over(bound); }); }
+
+    // Counts the change in.
     Weighed weigh(const Change& change) {
+        Weighed weighed;
+        const auto count = [&](Cause cause, float weight) {
+            if (weight > weighed.weight) weighed = {weight, cause};
+        };
+        const auto placement_fails = [&](Cause cause) {
+            assessment_.placement_holds = false;
+            count(cause, unbounded);
+        };
         std::vector<Bounds> boxes;
         for (const std::optional<Item>* item : {&change.before, &change.after}) {
             if (!*item) continue;
-            if (const std::optional<Cause> cause = certain(**item)) return {unbounded, *cause};
+            if (const std::optional<Cause> cause = moves_probes(**item)) placement_fails(*cause);
+            if (shine_on_probes(**item)) count(Cause::light, unbounded);
             if ((*item)->kind == ItemKind::fixed || (*item)->kind == ItemKind::vegetation) boxes.push_back(grown((*item)->bounds, glm::vec3(slack_m((*item)->bounds, footprint_.reach_m))));
         }
-        if (flips_placement(boxes)) return {unbounded, Cause::placement};
-        if (!within_reach(boxes)) return {};
-        const float gain = std::max(1.0f, footprint_.static_gain), later = later_share(boxes) * gain;
-        // No need to look for more than what settles it.
-        const float share = later > tolerance_ ? 0 : first_rays().share_of(boxes);
-        return {later + share * gain, Cause::rays};
+        if (assessment_.placement_holds && flips_placement(boxes)) placement_fails(Cause::placement);
+        if (within_reach(boxes)) count(Cause::rays, count_rays(boxes));
+        return weighed;
     }
 
-    // What matters wherever rays went.
-    [[nodiscard]] std::optional<Cause> certain(const Item& item) const {
+    // Gives the most that the boxes change of any probe.
+    float count_rays(std::span<const Bounds> boxes) {
+        const float gain = std::max(1.0f, footprint_.static_gain);
+        const std::array<float, patch_count> later = later_shares(boxes);
+        float most = 0;
+        for (std::size_t p = 0; p < footprint_.probes.size(); ++p) {
+            float& bound = assessment_.probe_bounds[p];
+            float share = later[patch_of(footprint_.sector, footprint_.probes[p].position)] * gain;
+            // No need to look for more than what settles it.
+            if (!over(bound + share)) share += first_rays().share_of(p, boxes) * gain;
+            bound += share;
+            most = std::max(most, share);
+        }
+        return most;
+    }
+
+    // Where placement certainly asked. Why it may come out otherwise.
+    [[nodiscard]] std::optional<Cause> moves_probes(const Item& item) const {
         const auto within = [&](float metres) { return overlap(item.bounds, grown(square_, {metres, metres, 0})); };
         switch (item.kind) {
             case ItemKind::fixed:
@@ -239,15 +261,8 @@ class Assessor {
                 if (overlap(bounds, square_)) return Cause::placement;
                 const float lattice_m = static_cast<float>(item.kind == ItemKind::vegetation ? placement::vegetation_lattice_m : placement::ground_lattice_m);
                 if (overlap(bounds, grown(square_, {footprint_.placement_m, footprint_.placement_m, 0})) && holds_lattice_point(bounds, lattice_m)) return Cause::placement;
-                if (item.emissive && shines_here(item)) return Cause::light;
                 return std::nullopt;
             }
-            case ItemKind::lamp:
-                if (shines_here(item)) return Cause::light;
-                return std::nullopt;
-            case ItemKind::sun:
-                if (!footprint_.probes.empty()) return Cause::light;
-                return std::nullopt;
             case ItemKind::manual_probe:
             case ItemKind::no_probes:
                 // As far as candidates stand and may be moved, and keep their distance.
@@ -256,15 +271,25 @@ class Assessor {
             case ItemKind::interior:
                 if (within(position_unit_m)) return Cause::interior;
                 return std::nullopt;
+            case ItemKind::lamp:
+            case ItemKind::sun: return std::nullopt;
         }
-        return Cause::rays;
+        return Cause::placement;
     }
 
-    // Lights within reach are in the probe's tree, seen or not.
-    [[nodiscard]] bool shines_here(const Item& item) const {
+    // Lights within reach are in a probe's tree, seen or not. Whether it is one of any probe's.
+    bool shine_on_probes(const Item& item) {
+        const bool emissive = item.emissive && (item.kind == ItemKind::fixed || item.kind == ItemKind::vegetation), everywhere = item.kind == ItemKind::sun;
+        if (!emissive && !everywhere && item.kind != ItemKind::lamp) return false;
         const glm::vec3 centre = (item.bounds.low + item.bounds.high) * 0.5f;
         const float radius_m = glm::length(item.bounds.high - item.bounds.low) * 0.5f, reach_m = footprint_.reach_m + radius_m + 2 * slack_m(item.bounds, footprint_.reach_m);
-        return std::ranges::any_of(footprint_.probes, [&](const Position& probe) { return glm::distance(glm::vec3(probe) * position_unit_m, centre) <= reach_m; });
+        bool any = false;
+        for (std::size_t p = 0; p < footprint_.probes.size(); ++p) {
+            if (!everywhere && glm::distance(placement::metres(footprint_.probes[p].position), centre) > reach_m) continue;
+            assessment_.probe_bounds[p] = std::max(assessment_.probe_bounds[p], unbounded);
+            any = true;
+        }
+        return any;
     }
 
     [[nodiscard]] bool within_reach(std::span<const Bounds> boxes) const {
@@ -290,14 +315,14 @@ class Assessor {
         return false;
     }
 
-    // Of blocks not counted before, where rays crossed one of the boxes' cells.
-    [[nodiscard]] float later_share(std::span<const Bounds> boxes) {
+    // By patch: of blocks not counted before, where rays crossed one of the boxes' cells.
+    [[nodiscard]] std::array<float, patch_count> later_shares(std::span<const Bounds> boxes) {
         const FootprintGrid& grid = footprint_.grid;
         const glm::vec3 cell(grid.cell_m, grid.cell_m, grid.layer_m), last(grid.columns - 1, grid.rows - 1, grid.layers - 1);
-        float share = 0;
+        std::array<float, patch_count> shares{};
         for (const Bounds& box : boxes) {
             // Above and below the grid rays go unseen.
-            if (box.low.z < grid.low().z || box.high.z > grid.high().z) return unbounded;
+            if (box.low.z < grid.low().z || box.high.z > grid.high().z) shares.fill(unbounded);
             const float half_step_m = cell.x * footprint_step / 2;
             const Bounds reached = grown(box, {half_step_m, half_step_m, 0});
             if (!overlap(reached, {grid.low(), grid.high()})) continue;
@@ -307,13 +332,14 @@ class Assessor {
                     std::uint64_t crossed = footprint_.crossed[grid.column(i, j)] & layers_between(from.z, to.z);
                     for (; crossed != 0; crossed &= crossed - 1) {
                         const std::size_t block = grid.block(i, j, std::countr_zero(crossed));
-                        if (!counted_[block]) share += weight_of_code(footprint_.weights[block]);
+                        if (counted_[block]) continue;
                         counted_[block] = true;
+                        for (std::size_t patch = 0; patch < patch_count; ++patch) shares[patch] += weight_of_code(footprint_.weight(block, patch));
                     }
                 }
             }
         }
-        return share;
+        return shares;
     }
 
     // Made when first needed: most results are asked about things far away.
@@ -330,6 +356,7 @@ class Assessor {
     const Settings& settings_;
     const float tolerance_;
     World& world_;
+    Assessment assessment_;
     Bounds square_;
     std::vector<bool> counted_;         // blocks
     std::vector<std::uint32_t> flips_;  // by solid test: the rays that may end otherwise
@@ -344,8 +371,14 @@ Assessment assess(const Footprint& footprint, const Settings& settings, std::spa
     return Assessor(footprint, settings, tolerance, world).run(changes);
 }
 
+float share_to_bake(const Assessment& assessment, float tolerance) {
+    if (assessment.probe_bounds.empty()) return 1;
+    const auto over = std::ranges::count_if(assessment.probe_bounds, [&](float bound) { return bound > tolerance; });
+    return static_cast<float>(over) / static_cast<float>(assessment.probe_bounds.size());
+}
+
 std::string describe(const Assessment& assessment, std::span<const Change> changes) {
-    if (!assessment.change) return "";
+    if (!assessment.change) return assessment.verdict == Verdict::rebake ? "it is exact only within a tolerance" : "";
     const Change& change = changes[*assessment.change];
     const auto how = [&]() -> std::string {
         switch (assessment.cause) {

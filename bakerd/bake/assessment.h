@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace drtv::bake {
 
@@ -30,11 +31,16 @@ enum class Cause : std::uint8_t {
 
 struct Assessment {
     Verdict verdict = Verdict::hit;
-    float bound = 0;  // on the change of any coefficient, as a share of its range; of a hit 0
+    float bound = 0;  // on the change of any coefficient, as a share of its range; of a hit 0, and 1 and more means that no bound is known
+    // What a bake can take over (sector_bake.h): whether probes stand where they stood, with how many rays of each solid test may end otherwise; and how much
+    // of each probe may differ. No bounds where only the whole can be baked again.
+    bool placement_holds = true;
+    std::vector<std::uint8_t> flips;
+    std::vector<float> probe_bounds;
     // Of the change that weighs most; nothing of a hit.
     std::optional<std::size_t> change;  // index
     Cause cause = Cause::rays;
-    float weight = 0;  // of that change alone; 1 and more means that no bound is known
+    float weight = 0;  // of that change alone
 };
 
 // Whether the result of a bake with `settings` holds for the map of `world`; `changes` are those from the baked map to it. `tolerance` is the largest bound of
@@ -43,6 +49,9 @@ struct Assessment {
 // Ranges of coefficients: sky visibility 1, radiance transfer 0.2821 (i = 0) and 0.9772 (i > 0), static irradiance static_irradiance_range. What a change
 // brings to static light is bounded as far as no surface stands nearer than 25 cm to a lamp. REQUIRES: a FloatMode on this thread.
 [[nodiscard]] Assessment assess(const Footprint& footprint, const Settings& settings, std::span<const Change> changes, float tolerance, World& world);
+
+// Of the sector's probes those that a bake cannot take over. REQUIRES: the verdict is rebake.
+[[nodiscard]] float share_to_bake(const Assessment& assessment, float tolerance);
 
 // "palm_017 moved: rays cross column (12, 7), weight 0.8 %".
 [[nodiscard]] std::string describe(const Assessment& assessment, std::span<const Change> changes);

@@ -2,11 +2,14 @@
 
 #include "bakerd/bake/stored_bytes.h"
 
+#include <drtv/sector.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <type_traits>
 
 namespace drtv::bake {
 namespace {
@@ -17,12 +20,28 @@ constexpr std::int32_t least_cell_m = 16, least_layer_m = 4;
 constexpr std::int32_t most_columns = 80, most_layers = 48;
 // New things may stand as much higher than all others before they are beyond the grid.
 constexpr float headroom_m = 16;
+// Farther away hardly a thing is so large that later rays of a probe find it by more than the tolerance.
+constexpr double near_m = 64;
 
 constexpr int least_weight_exponent = -14;
 
-constexpr std::uint64_t magic = 0x31'50'46'56'54'52'44;  // "DRTVFP1"
+constexpr std::uint64_t magic = 0x32'50'46'56'54'52'44;  // "DRTVFP2"
 constexpr std::uint32_t most_rays = 1u << 16;
+constexpr std::uint64_t most_probes = no_probe;
 constexpr std::int32_t most_place = 1 << 24;
+
+template <class Probes, class Visit>
+void for_each_column(Probes& probes, Visit visit) {
+    const auto each = [&](auto member) {
+        for (auto& probe : probes) visit(probe.*member);
+    };
+    each(&ProbeRecord::position);
+    each(&ProbeRecord::rays);
+    each(&ProbeRecord::shadow_rays);
+    each(&ProbeRecord::back_hits);
+    each(&ProbeRecord::error);
+    each(&ProbeRecord::bound);
+}
 
 // Two codes in a byte.
 std::vector<std::uint8_t> in_pairs(const std::vector<std::uint8_t>& codes) {
@@ -42,7 +61,8 @@ std::vector<std::uint8_t> from_pairs(const std::vector<std::uint8_t>& pairs) {
 
 bool is_sound(const FootprintGrid& grid) {
     const auto within = [](std::int32_t value, std::int32_t least, std::int32_t most) { return value >= least && value <= most; };
-    return within(grid.cell_m, 1, 1 << 20) && within(grid.layer_m, 1, 1 << 20) && within(grid.columns, 1, 1024) && within(grid.rows, 1, 1024) && within(grid.layers, 1, 64) && within(grid.x, -most_place, most_place) &&
+    const bool near_inside = within(grid.near_i, 0, grid.columns) && within(grid.near_j, 0, grid.rows) && within(grid.near_columns, 0, grid.columns - grid.near_i) && within(grid.near_rows, 0, grid.rows - grid.near_j);
+    return near_inside && within(grid.cell_m, 1, 1 << 20) && within(grid.layer_m, 1, 1 << 20) && within(grid.columns, 1, 1024) && within(grid.rows, 1, 1024) && within(grid.layers, 1, 64) && within(grid.x, -most_place, most_place) &&
            within(grid.y, -most_place, most_place) && within(grid.z, -most_place, most_place);
 }
 
@@ -56,12 +76,17 @@ FootprintGrid footprint_grid(map::SectorCoordinate sector, float distance_m, flo
     FootprintGrid grid;
     grid.cell_m = least_cell_m;
     while (side_m + 2 * double{distance_m} > static_cast<double>(most_columns - 2) * grid.cell_m) grid.cell_m *= 2;
-    const auto first = [&](std::int32_t s) { return static_cast<std::int32_t>(std::floor((s * side_m - double{distance_m}) / grid.cell_m)); };
-    const auto end = [&](std::int32_t s) { return static_cast<std::int32_t>(std::ceil(((s + 1) * side_m + double{distance_m}) / grid.cell_m)); };
-    grid.x = first(sector.i);
-    grid.y = first(sector.j);
-    grid.columns = end(sector.i) - grid.x;
-    grid.rows = end(sector.j) - grid.y;
+    const auto first = [&](std::int32_t s, double around_m) { return static_cast<std::int32_t>(std::floor((s * side_m - around_m) / grid.cell_m)); };
+    const auto end = [&](std::int32_t s, double around_m) { return static_cast<std::int32_t>(std::ceil(((s + 1) * side_m + around_m) / grid.cell_m)); };
+    grid.x = first(sector.i, distance_m);
+    grid.y = first(sector.j, distance_m);
+    grid.columns = end(sector.i, distance_m) - grid.x;
+    grid.rows = end(sector.j, distance_m) - grid.y;
+    const double near = std::min<double>(near_m, distance_m);
+    grid.near_i = first(sector.i, near) - grid.x;
+    grid.near_j = first(sector.j, near) - grid.y;
+    grid.near_columns = end(sector.i, near) - grid.x - grid.near_i;
+    grid.near_rows = end(sector.j, near) - grid.y - grid.near_j;
     if (!(low_m < high_m)) low_m = high_m = 0;
     low_m -= headroom_m;
     high_m += headroom_m;
@@ -70,6 +95,13 @@ FootprintGrid footprint_grid(map::SectorCoordinate sector, float distance_m, flo
     grid.z = static_cast<std::int32_t>(std::floor(low_m / static_cast<float>(grid.layer_m)));
     grid.layers = static_cast<std::int32_t>(std::ceil(high_m / static_cast<float>(grid.layer_m))) - grid.z;
     return grid;
+}
+
+std::size_t patch_of(map::SectorCoordinate sector, const placement::Position& probe) {
+    constexpr std::int64_t side = 4, sector_units = placement::sector_size_m * placement::units_per_m, patch_units = sector_units / side;
+    // Wherever it stands: it need only be the same each time.
+    const auto along = [](std::int64_t units, std::int64_t s) { return static_cast<std::size_t>(std::clamp<std::int64_t>((units - s * sector_units) / patch_units, 0, side - 1)); };
+    return along(probe.y, sector.j) * side + along(probe.x, sector.i);
 }
 
 std::uint8_t weight_code(float weight) {
@@ -96,7 +128,9 @@ std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
     writer.add(footprint.static_gain);
     writer.add(footprint.placement_m);
     writer.add(footprint.min_distance_m);
-    writer.add_all(footprint.probes);
+    writer.add(static_cast<std::uint64_t>(footprint.probes.size()));
+    // Kind by kind: like stands beside like.
+    for_each_column(footprint.probes, [&](const auto& value) { writer.add(value); });
     writer.add(footprint.grid);
     for (const std::uint64_t column : footprint.crossed) {
         for (std::size_t byte = 0; byte < bytes_of_column(footprint.grid); ++byte) writer.add(static_cast<std::uint8_t>(column >> 8 * byte));
@@ -129,7 +163,10 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     footprint.static_gain = reader.read<float>();
     footprint.placement_m = reader.read<float>();
     footprint.min_distance_m = reader.read<float>();
-    footprint.probes = reader.read_all<placement::Position>();
+    const auto probes = reader.read<std::uint64_t>();
+    if (probes > most_probes) return std::nullopt;
+    footprint.probes.resize(probes);
+    for_each_column(footprint.probes, [&](auto& value) { value = reader.read<std::remove_reference_t<decltype(value)>>(); });
     footprint.grid = reader.read<FootprintGrid>();
     if (!reader.sound() || !is_sound(footprint.grid)) return std::nullopt;
     footprint.crossed.resize(footprint.grid.column_count());
@@ -145,9 +182,9 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
         if (axis.size() != to_flip.size()) return std::nullopt;
     }
     // Codes come in pairs: of an odd number of them one is too many.
-    const std::size_t blocks = footprint.grid.block_count();
-    if (footprint.weights.size() != blocks + blocks % 2) return std::nullopt;
-    footprint.weights.resize(blocks);
+    const std::size_t weights = Footprint::weight_count(footprint.grid);
+    if (footprint.weights.size() != weights + weights % 2) return std::nullopt;
+    footprint.weights.resize(weights);
     glm::uvec3 position(0);  // odd bytes may wrap around
     for (std::size_t n = 0; n < to_flip.size(); ++n) {
         position += glm::uvec3(glm::ivec3(differences[0][n], differences[1][n], differences[2][n]));

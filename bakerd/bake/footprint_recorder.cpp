@@ -25,19 +25,34 @@ Span between(float low, float high, float origin, float direction) {
 
 FootprintRecorder::FootprintRecorder(const FootprintGrid& grid)
     : grid_(grid), crossed_(static_cast<std::size_t>(grid.columns + 2) * static_cast<std::size_t>(grid.rows + 2)),
-      blocks_(grid.block_count() + static_cast<std::size_t>((grid.columns + 4) * (grid.layers + 3) / 4)), most_(blocks_.size()) {}
-
-void FootprintRecorder::begin() {
-    if (++probe_ < 1u << (32 - path_bits)) return;
-    for (std::size_t n = 0; n < blocks_.size(); ++n) {
-        fold(n);
-        blocks_[n].seen = 0;
+      lowest_blocks_(crossed_.size()), blocks_(grid.block_count() + grid.blocks_of_column()), patches_(1) {
+    most_.grid = grid;
+    most_.weights.resize(Footprint::weight_count(grid));
+    for (std::int32_t j = 0; j < grid.rows + 2; ++j) {
+        for (std::int32_t i = 0; i < grid.columns + 2; ++i) {
+            // What crosses the border by rounding stands for nothing.
+            const bool inside = i < grid.columns && j < grid.rows;
+            lowest_blocks_[static_cast<std::size_t>(j * (grid.columns + 2) + i)] = static_cast<std::int32_t>(inside ? grid.lowest_block(i, j) : grid.block_count());
+        }
     }
-    probe_ = 1;
+}
+
+void FootprintRecorder::begin(std::size_t patch) {
+    if (++probe_ == 1u << (32 - path_bits)) {
+        for (std::size_t n = 0; n < grid_.block_count(); ++n) {
+            fold(n);
+            blocks_[n].seen = 0;
+        }
+        probe_ = 1;
+        patches_.resize(1);
+    }
+    patches_.push_back(static_cast<std::uint8_t>(patch));
 }
 
 void FootprintRecorder::fold(std::size_t block) {
-    most_[block] = std::max(most_[block], weight_code(blocks_[block].share));
+    if (block >= grid_.block_count()) return;
+    std::uint8_t& most = most_.weight(block, patches_[blocks_[block].seen >> path_bits]);
+    most = std::max(most, weight_code(blocks_[block].share));
     blocks_[block].share = 0;
 }
 
@@ -66,14 +81,15 @@ void FootprintRecorder::cross(const trace::Ray& ray, float length_m, Visit visit
     const glm::vec3 scale(per_side, per_side, per_height), origin = (ray.origin - low) * scale, direction = ray.direction * scale;
     const float rise = std::abs(direction.z) * step / 2, top = static_cast<float>(grid_.layers) - 0.5f;
     const auto count = static_cast<std::int32_t>((to - from) / step) + 2;
-    const std::int32_t pitch = grid_.columns + 2, block_columns = (grid_.columns + 1) >> 1, block_layers = (grid_.layers + 3) >> 2;
+    const std::int32_t pitch = grid_.columns + 2;
     std::int32_t last_low = -1, last_high = -1;
     for (std::int32_t n = 0; n < count; ++n) {
         const float distance = std::min(from + static_cast<float>(n) * step, to), height = origin.z + direction.z * distance;
         const auto i = static_cast<std::int32_t>(origin.x + direction.x * distance), j = static_cast<std::int32_t>(origin.y + direction.y * distance);
         const auto lowest = static_cast<std::int32_t>(std::min(std::max(height - rise, 0.0f), top)), highest = static_cast<std::int32_t>(std::min(std::max(height + rise, 0.0f), top));
-        crossed_[static_cast<std::size_t>(j * pitch + i)] |= layers_between(lowest, highest);
-        const std::int32_t stack = ((j >> 1) * block_columns + (i >> 1)) * block_layers, low_block = stack + (lowest >> 2), high_block = stack + (highest >> 2);
+        const auto column = static_cast<std::size_t>(j * pitch + i);
+        crossed_[column] |= layers_between(lowest, highest);
+        const std::int32_t low_block = lowest_blocks_[column] + (lowest >> FootprintGrid::block_bits), high_block = lowest_blocks_[column] + (highest >> FootprintGrid::block_bits);
         if (low_block == last_low && high_block == last_high) continue;
         for (std::int32_t block = low_block; block <= high_block; ++block) visit(static_cast<std::size_t>(block));
         last_low = low_block;
@@ -96,14 +112,12 @@ void FootprintRecorder::lone(const trace::Ray& ray, float share) {
     cross(ray, ray.far_m, [&](std::size_t index) { current(index).share += weight; });
 }
 
-void FootprintRecorder::merge_into(std::vector<std::uint64_t>& crossed, std::vector<std::uint8_t>& weights) {
+void FootprintRecorder::merge_into(Footprint& footprint) {
     for (std::int32_t j = 0; j < grid_.rows; ++j) {
-        for (std::int32_t i = 0; i < grid_.columns; ++i) crossed[grid_.column(i, j)] |= crossed_[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.columns + 2) + static_cast<std::size_t>(i)];
+        for (std::int32_t i = 0; i < grid_.columns; ++i) footprint.crossed[grid_.column(i, j)] |= crossed_[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.columns + 2) + static_cast<std::size_t>(i)];
     }
-    for (std::size_t n = 0; n < weights.size(); ++n) {
-        fold(n);
-        weights[n] = std::max(weights[n], most_[n]);
-    }
+    for (std::size_t n = 0; n < grid_.block_count(); ++n) fold(n);
+    for (std::size_t n = 0; n < footprint.weights.size(); ++n) footprint.weights[n] = std::max(footprint.weights[n], most_.weights[n]);
 }
 
 }  // namespace drtv::bake

@@ -15,8 +15,8 @@ class FootprintRecorder {
   public:
     explicit FootprintRecorder(const FootprintGrid& grid);
 
-    // What follows is another probe's: shares add up within one, and the largest of all counts.
-    void begin();
+    // What follows is another probe's, which stands in that patch: shares add up within one, and the largest of all counts.
+    void begin(std::size_t patch);
 
     // A part of the path of that number, as far as `length_m`: a change anywhere on it changes what the path brings by at most `share` of a coefficient. Of
     // a path's parts the first through a block counts alone: later ones must not weigh more.
@@ -25,8 +25,8 @@ class FootprintRecorder {
     // A ray whose share is its own, as that to a light.
     void lone(const trace::Ray& ray, float share);
 
-    // Of each column all layers of both, of each block the larger code.
-    void merge_into(std::vector<std::uint64_t>& crossed, std::vector<std::uint8_t>& weights);
+    // Of each column all layers of both, of each block the larger code. REQUIRES: the footprint is of the same grid.
+    void merge_into(Footprint& footprint);
 
   private:
     // Small: a sector's blocks should stay in the caches.
@@ -43,8 +43,10 @@ class FootprintRecorder {
 
     const FootprintGrid grid_;
     std::vector<std::uint64_t> crossed_;  // by column; with a border of one, where a walk may end by rounding
+    std::vector<std::int32_t> lowest_blocks_;  // by column, likewise
     std::vector<Block> blocks_;
-    std::vector<std::uint8_t> most_;      // of the probes before, as codes
+    Footprint most_;                      // weights of the probes before
+    std::vector<std::uint8_t> patches_;   // by probe
     std::uint32_t probe_ = 0;
 };
 
@@ -59,8 +61,13 @@ class FootprintRecorders {
     void store(Footprint& footprint) {
         footprint.grid = grid_;
         footprint.crossed.assign(grid_.column_count(), 0);
-        footprint.weights.assign(grid_.block_count(), 0);
-        for (FootprintRecorder& recorder : recorders_) recorder.merge_into(footprint.crossed, footprint.weights);
+        footprint.weights.assign(Footprint::weight_count(grid_), 0);
+        merge_into(footprint);
+    }
+
+    // REQUIRES: besides, the footprint is of the same grid.
+    void merge_into(Footprint& footprint) {
+        for (FootprintRecorder& recorder : recorders_) recorder.merge_into(footprint);
     }
 
   private:

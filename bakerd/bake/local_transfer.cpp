@@ -118,7 +118,7 @@ class LocalIntegrator {
         Work work;
         if (recorders_ != nullptr) {
             work.recorder = &recorders_->of_this_thread();
-            work.recorder->begin();
+            work.recorder->begin(0);  // without bounds: where it counts does not matter
         }
         for (std::uint32_t first = 0; first < samples_.count(); first += group_size) {
             std::vector<Group> groups(settings_.bounces);  // by number of bounces

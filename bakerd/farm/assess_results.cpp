@@ -2,13 +2,13 @@
 
 #include "bakerd/bake/assessment.h"
 
+#include <drtv/read.h>
+
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <map>
-#include <mutex>
 #include <set>
 
 namespace drtv::farm {
@@ -16,21 +16,22 @@ namespace {
 
 constexpr std::size_t most_changes = 1000, most_warnings = 20;
 
-using Changes = std::shared_ptr<const std::vector<bake::Change>>;
+// Of a sector; nothing, with a sentence, when it cannot be read.
+std::optional<bake::Footprint> read_footprint(const Digest& digest, const map::SectorCoordinate& sector, BlobStore& store, std::string& problem) {
+    const auto bytes = store.get(digest);
+    auto footprint = bytes ? bake::decode_footprint(*bytes) : std::nullopt;
+    if (footprint && footprint->sector == sector) return footprint;
+    problem = fmt::format("sector ({}, {}): the record of an earlier result cannot be used: {}", sector.i, sector.j, bytes ? "it is not one" : bytes.error().message);
+    return std::nullopt;
+}
 
 class Assessing {
   public:
-    Assessing(const AssessRequest& request, bake::World& world, const bake::Inventory& inventory, BlobStore& store) : request_(request), world_(world), inventory_(inventory), store_(store) {}
+    Assessing(const AssessRequest& request, bake::World& world, ChangesSince& changes, BlobStore& store) : request_(request), world_(world), changes_(changes), store_(store) {}
 
     AssessAnswer run() {
         AssessAnswer answer;
         answer.sectors.resize(request_.sectors.size());
-        // Each map of which there are results, before the sectors: so no two threads read the same.
-        for (const AssessRequest::Sector& sector : request_.sectors) {
-            for (const AssessRequest::Candidate& candidate : sector.candidates) {
-                if (!changes_.contains(candidate.inventory)) changes_[candidate.inventory] = changes_since(candidate.inventory);
-            }
-        }
         tbb::this_task_arena::isolate([&] {
             tbb::parallel_for(std::size_t{0}, request_.sectors.size(), [&](std::size_t n) {
                 const trace::FloatMode float_mode;
@@ -43,45 +44,39 @@ class Assessing {
     }
 
   private:
-    Changes changes_since(const Digest& digest) {
-        const auto bytes = store_.get(digest);
-        const auto before = bytes ? bake::decode_inventory(*bytes) : std::nullopt;
-        if (before) return std::make_shared<const std::vector<bake::Change>>(bake::changes_between(*before, inventory_));
-        warn(fmt::format("the record of an earlier map cannot be used: {}", bytes ? "it is not one" : bytes.error().message));
-        return nullptr;
-    }
-
     AssessAnswer::Sector assess(const AssessRequest::Sector& sector) {
         AssessAnswer::Sector best;
         best.reason = "its earlier results are lost";
         bool first = true;
         for (std::size_t c = 0; c < sector.candidates.size(); ++c) {
-            const Changes& changes = changes_.at(sector.candidates[c].inventory);
-            if (!changes) continue;
-            const auto bytes = store_.get(sector.candidates[c].footprint);
-            const auto footprint = bytes ? bake::decode_footprint(*bytes) : std::nullopt;
-            if (!footprint || footprint->sector != sector.sector) {
-                warn(fmt::format("sector ({}, {}): the record of an earlier result cannot be used: {}", sector.sector.i, sector.sector.j, bytes ? "it is not one" : bytes.error().message));
+            std::string problem;
+            const auto changes = changes_.map(sector.candidates[c].inventory, problem);
+            const auto footprint = changes ? read_footprint(sector.candidates[c].footprint, sector.sector, store_, problem) : std::nullopt;
+            if (!footprint) {
+                warn(problem);
                 continue;
             }
-            const bake::Assessment assessment = bake::assess(*footprint, request_.settings, *changes, request_.settings.tolerance, world_);
-            if (assessment.verdict == bake::Verdict::hit) return {assessment.verdict, c, 0, ""};
-            const bool nearer = assessment.verdict == bake::Verdict::near_hit && (best.verdict == bake::Verdict::rebake || assessment.bound < best.bound);
-            if (nearer || (first && best.verdict == bake::Verdict::rebake)) best = {assessment.verdict, c, assessment.bound, bake::describe(assessment, *changes)};
+            const float tolerance = request_.settings.tolerance;
+            const bake::Assessment assessment = bake::assess(*footprint, request_.settings, *changes, tolerance, world_);
+            if (assessment.verdict == bake::Verdict::hit) return {assessment.verdict, c, 0, 0, ""};
+            const bool near = assessment.verdict == bake::Verdict::near_hit;
+            const float share = near ? 0 : bake::share_to_bake(assessment, tolerance);
+            if (first || share < best.share || (near && assessment.bound < best.bound)) best = {assessment.verdict, c, assessment.bound, share, bake::describe(assessment, *changes)};
             first = false;
         }
         return best;
     }
 
     // Since the maps of those results that are not the same any more, each once.
-    void tell_changes(AssessAnswer& answer) const {
+    void tell_changes(AssessAnswer& answer) {
         std::set<Digest> inventories;
         for (std::size_t n = 0; n < answer.sectors.size(); ++n) {
             if (answer.sectors[n].verdict != bake::Verdict::hit && !request_.sectors[n].candidates.empty()) inventories.insert(request_.sectors[n].candidates[answer.sectors[n].candidate].inventory);
         }
         std::set<std::pair<std::string, std::array<float, 6>>> told;
         for (const Digest& inventory : inventories) {
-            const Changes& changes = changes_.at(inventory);
+            std::string problem;
+            const auto changes = changes_.map(inventory, problem);
             if (!changes) continue;
             for (const bake::Change& change : *changes) {
                 map::Bounds bounds;
@@ -104,15 +99,37 @@ class Assessing {
 
     const AssessRequest& request_;
     bake::World& world_;
-    const bake::Inventory& inventory_;
+    ChangesSince& changes_;
     BlobStore& store_;
-    std::map<Digest, Changes> changes_;  // by inventory; nothing where that cannot be read
     std::mutex mutex_;
     std::set<std::string> warnings_;  // guarded by mutex_
 };
 
 }  // namespace
 
-AssessAnswer assess_results(const AssessRequest& request, bake::World& world, const bake::Inventory& inventory, BlobStore& store) { return Assessing(request, world, inventory, store).run(); }
+std::shared_ptr<const std::vector<bake::Change>> ChangesSince::map(const Digest& inventory, std::string& problem) {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = known_.find(inventory); found != known_.end()) return found->second;
+    const auto bytes = store_.get(inventory);
+    const auto before = bytes ? bake::decode_inventory(*bytes) : std::nullopt;
+    if (before) return known_[inventory] = std::make_shared<const std::vector<bake::Change>>(bake::changes_between(*before, *inventory_));
+    problem = fmt::format("the record of an earlier map cannot be used: {}", bytes ? "it is not one" : bytes.error().message);
+    return nullptr;
+}
+
+AssessAnswer assess_results(const AssessRequest& request, bake::World& world, ChangesSince& changes, BlobStore& store) { return Assessing(request, world, changes, store).run(); }
+
+std::optional<bake::EarlierBake> read_earlier(const BakeRequest& request, bake::World& world, ChangesSince& changes, BlobStore& store) {
+    if (!request.earlier) return std::nullopt;
+    std::string problem;
+    const auto since = changes.map(request.earlier->inventory, problem);
+    const auto file = store.get(request.earlier->file);
+    auto footprint = read_footprint(request.earlier->footprint, request.sector, store, problem);
+    bake::EarlierBake earlier;
+    if (!since || !footprint || !file || !read_sector(*file, earlier.sector).ok()) return std::nullopt;
+    earlier.assessment = bake::assess(*footprint, request.settings, *since, request.settings.tolerance, world);
+    earlier.footprint = std::move(*footprint);
+    return earlier;
+}
 
 }  // namespace drtv::farm

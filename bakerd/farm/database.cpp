@@ -9,7 +9,7 @@
 namespace drtv::farm {
 namespace {
 
-constexpr int schema_version = 3;
+constexpr int schema_version = 4;
 
 constexpr const char* schema = R"sql(
 CREATE TABLE map (manifest TEXT PRIMARY KEY, summary TEXT NOT NULL) WITHOUT ROWID;
@@ -30,7 +30,7 @@ constexpr const char* result_schema = R"sql(
 CREATE TABLE result (
   id INTEGER PRIMARY KEY, i INTEGER NOT NULL, j INTEGER NOT NULL, settings_key TEXT NOT NULL, file TEXT NOT NULL, size INTEGER NOT NULL,
   probes INTEGER NOT NULL, rays INTEGER NOT NULL, warnings TEXT NOT NULL, footprint TEXT NOT NULL, inventory TEXT NOT NULL,
-  footprint_size INTEGER NOT NULL, seconds REAL NOT NULL, used INTEGER NOT NULL);
+  footprint_size INTEGER NOT NULL, seconds REAL NOT NULL, bound REAL NOT NULL DEFAULT 0, used INTEGER NOT NULL);
 CREATE INDEX result_of_sector ON result (i, j, settings_key, used);
 CREATE INDEX result_by_use ON result (used);
 CREATE INDEX result_of_file ON result (file);
@@ -44,9 +44,12 @@ constexpr const char* schema_2_from_1 = "ALTER TABLE task ADD COLUMN warnings TE
 constexpr const char* schema_3_from_2 =
     "ALTER TABLE task ADD COLUMN bound REAL NOT NULL DEFAULT 0; ALTER TABLE job ADD COLUMN sectors_near INTEGER NOT NULL DEFAULT 0; ALTER TABLE job ADD COLUMN largest_bound REAL NOT NULL DEFAULT 0;";
 
+// Records of results are of another kind since: none of before can be assessed.
+constexpr const char* schema_4_from_3 = "DELETE FROM result; ALTER TABLE result ADD COLUMN bound REAL NOT NULL DEFAULT 0;";
+
 constexpr const char* task_columns = "id, key, manifest, i, j, settings, state, failed_attempts, result, size, probes, rays, error, warnings, bound";
 constexpr const char* job_columns = "id, request_id, manifest, preset, settings, overrides, region, state, error, sectors_cached, created, ended, sectors_near, largest_bound";
-constexpr const char* result_columns = "id, i, j, settings_key, file, size, probes, rays, warnings, footprint, inventory, footprint_size, seconds";
+constexpr const char* result_columns = "id, i, j, settings_key, file, size, probes, rays, warnings, footprint, inventory, footprint_size, seconds, bound";
 
 // A list of sentences in one column: a line each, for no sentence has a line's end.
 std::string joined(const std::vector<std::string>& sentences) {
@@ -149,6 +152,7 @@ class Database::Statement {
         row.result.inventory = stored_digest(text());
         row.result.footprint_bytes = integer();
         row.result.seconds = real();
+        row.result.bound = static_cast<float>(real());
         return row;
     }
     Result<std::vector<ResultRow>> all_results() {
@@ -209,7 +213,8 @@ Result<std::unique_ptr<Database>> Database::open(const std::string& path) {
             std::string steps = version == 0 ? schema : "";
             if (version == 1) steps += schema_2_from_1;
             if (version == 1 || version == 2) steps += schema_3_from_2;
-            if (auto done = database->execute((steps + result_schema).c_str()); !done) return done;
+            steps += version == 3 ? schema_4_from_3 : result_schema;
+            if (auto done = database->execute(steps.c_str()); !done) return done;
             return database->execute(fmt::format("PRAGMA user_version={}", schema_version).c_str());
         });
         if (!created) return tl::unexpected(created.error());
@@ -356,9 +361,9 @@ Result<std::optional<TaskRow>> Database::task_by_key(const Digest& key) {
 
 Result<void> Database::insert_result(ResultRow& row) {
     if (auto done = execute("UPDATE counter SET value = value + 1 WHERE name = 'uses'"); !done) return done;
-    Statement statement(*this, fmt::format("INSERT INTO result ({}, used) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, (SELECT value FROM counter WHERE name = 'uses'))", result_columns));
+    Statement statement(*this, fmt::format("INSERT INTO result ({}, used) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, (SELECT value FROM counter WHERE name = 'uses'))", result_columns));
     statement.bind(row.sector.i).bind(row.sector.j).bind(to_hex(row.settings_key)).bind(to_hex(row.result.result)).bind(row.result.size_bytes).bind(row.result.probes).bind(row.result.rays);
-    statement.bind(joined(row.result.warnings)).bind(to_hex(row.result.footprint)).bind(to_hex(row.result.inventory)).bind(row.result.footprint_bytes).bind_real(row.result.seconds);
+    statement.bind(joined(row.result.warnings)).bind(to_hex(row.result.footprint)).bind(to_hex(row.result.inventory)).bind(row.result.footprint_bytes).bind_real(row.result.seconds).bind_real(row.result.bound);
     if (auto done = statement.run(); !done) return done;
     row.id = sqlite3_last_insert_rowid(handle_);
     return {};

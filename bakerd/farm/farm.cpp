@@ -213,7 +213,10 @@ Result<JobView> Farm::create_job(const JobRequest& request) {
     Job& kept = jobs_[id] = std::move(job);
     std::vector<map::SectorCoordinate> order;
     for (const PlannedSector& sector : planned->plan.sectors) order.push_back(sector.sector);
+    std::vector<std::int64_t> ids;
+    for (const TaskRow& task : *tasks) ids.push_back(task.id);
     adopt(kept, std::move(*tasks), order);
+    for (std::size_t n = 0; n < ids.size(); ++n) tasks_.at(ids[n]).earlier = planned->plan.sectors[n].earlier;
     spdlog::info("job {}: {} sectors, {} of them in the cache, {} nearly so", id, kept.counts.total, kept.row.sectors_cached, kept.row.sectors_near);
     end_job_if_complete(kept);
     auto view = view_of(kept);
@@ -289,7 +292,9 @@ std::optional<BakeRequest> Farm::next_task() {
             Job& job = jobs_.at(id);
             if (!job.started) job.started = Clock::now();
         }
-        return BakeRequest{static_cast<std::uint64_t>(task.row.id), task.row.manifest, task.row.sector, task.row.settings};
+        BakeRequest request{static_cast<std::uint64_t>(task.row.id), task.row.manifest, task.row.sector, task.row.settings, {}};
+        if (task.earlier) request.earlier = digests_of(*task.earlier);
+        return request;
     }
     return std::nullopt;
 }
@@ -304,7 +309,8 @@ void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& ou
     if (const auto* baked = std::get_if<BakeAnswer>(&outcome)) {
         task.row.state = TaskState::done;
         task.row.result = *baked;
-        task.row.bound = 0;
+        task.row.bound = baked->bound;
+        if (task.earlier) task.row.result.seconds = task.earlier->seconds;
     } else {
         const auto* failure = std::get_if<FailureAnswer>(&outcome);
         task.row.state = TaskState::failed;
@@ -316,7 +322,7 @@ void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& ou
         spdlog::error("{}", updated.error().message);
     }
     // After the task, which holds it while its jobs run.
-    if (const auto* baked = std::get_if<BakeAnswer>(&outcome)) keep_result(task.row, *baked);
+    if (task.row.state == TaskState::done) keep_result(task.row);
     const std::vector<std::int64_t> jobs = task.jobs;
     const TaskRow row = task.row;
     for (std::int64_t job_id : jobs) {
@@ -324,6 +330,7 @@ void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& ou
         if (row.state == TaskState::done) {
             ++job.counts.done;
             ++job.baked;
+            job.row.largest_bound = std::max(job.row.largest_bound, row.bound);
             job.counts.probes += row.result.probes;
             job.rays += row.result.rays;
         } else {
@@ -336,7 +343,8 @@ void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& ou
 }
 
 // Without it the file is still there for its job; only no later one finds it.
-void Farm::keep_result(const TaskRow& task, const BakeAnswer& baked) {
+void Farm::keep_result(const TaskRow& task) {
+    const BakeAnswer& baked = task.result;
     ResultRow row{0, task.sector, bake::settings_key(task.settings), baked};
     const auto kept = database_->transaction([&]() -> Result<void> {
         if (auto inserted = database_->insert_result(row); !inserted) return inserted;

@@ -111,6 +111,7 @@ class Farm {
         TaskRow row;
         std::vector<std::int64_t> jobs;  // running jobs that want it
         bool running = false;
+        std::optional<BakeAnswer> earlier;  // of which the bake takes over what holds
     };
 
     Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<BlobStore> blobs, std::unique_ptr<Database> database);
@@ -126,7 +127,7 @@ class Farm {
     [[nodiscard]] Result<Planned> make_plan(const JobRequest& request);
     [[nodiscard]] Result<std::vector<TaskRow>> carry_out(JobRow& row, const Digest& content, const Plan& plan);
     [[nodiscard]] Result<TaskRow> find_or_add_task(const JobRow& job, const Digest& content, const PlannedSector& planned);
-    void keep_result(const TaskRow& task, const BakeAnswer& baked);
+    void keep_result(const TaskRow& task);
     // Removes results, those used longest ago first, until at most so many bytes are left.
     [[nodiscard]] Result<void> shrink_cache(std::int64_t most_bytes);
     [[nodiscard]] Result<CacheView> cache_view();

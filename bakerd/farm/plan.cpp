@@ -65,8 +65,8 @@ Result<Plan> look_up(Database& database, const BlobStore& blobs, const InspectAn
         if (!rows) return tl::unexpected(rows.error());
         for (ResultRow& row : *rows) {
             if (!blobs.has(row.result.result)) continue;
-            if (row.result.inventory == map.inventory) {
-                reuse(planned, row.result, 0);
+            if (row.result.inventory == map.inventory && row.result.bound <= settings.tolerance) {
+                reuse(planned, row.result, row.result.bound);
                 break;
             }
             if (planned.candidates.empty()) planned.seconds = row.result.seconds;
@@ -82,7 +82,7 @@ std::optional<AssessRequest> question_of(const Plan& plan, const Digest& manifes
         if (planned.candidates.empty()) continue;
         AssessRequest::Sector& asked = request.sectors.emplace_back();
         asked.sector = planned.sector;
-        for (const ResultRow& row : planned.candidates) asked.candidates.push_back({row.result.footprint, row.result.inventory});
+        for (const ResultRow& row : planned.candidates) asked.candidates.push_back(digests_of(row.result));
     }
     if (request.sectors.empty()) return std::nullopt;
     return request;
@@ -94,7 +94,15 @@ void apply(const AssessAnswer& answer, Plan& plan) {
         if (planned.candidates.empty() || next >= answer.sectors.size()) continue;
         const AssessAnswer::Sector& assessed = answer.sectors[next++];
         planned.reason = assessed.reason;
-        if (assessed.verdict != bake::Verdict::rebake && assessed.candidate < planned.candidates.size()) reuse(planned, planned.candidates[assessed.candidate].result, assessed.bound);
+        if (assessed.candidate >= planned.candidates.size()) continue;
+        const BakeAnswer& candidate = planned.candidates[assessed.candidate].result;
+        if (assessed.verdict != bake::Verdict::rebake) {
+            reuse(planned, BakeAnswer(candidate), assessed.bound);
+        } else if (assessed.share < 1) {
+            planned.earlier = candidate;
+            planned.share = assessed.share;
+            planned.seconds = candidate.seconds * static_cast<double>(assessed.share);
+        }
     }
     plan.changes = answer.changes;
     plan.warnings = answer.warnings;

@@ -18,6 +18,8 @@ struct PlannedSector {
     std::optional<BakeAnswer> reused;  // unless rebake
     float bound = 0;                   // of a near hit
     std::string reason;                // one sentence; empty of a hit
+    std::optional<BakeAnswer> earlier; // of another map, of which a rebake takes over what holds
+    float share = 1;                   // of its probes, that a rebake has to bake
     double seconds = 0;                // that baking it will take, as far as is known; 0: not
     std::vector<ResultRow> candidates; // to be assessed, the one used last first
 };

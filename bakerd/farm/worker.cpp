@@ -35,6 +35,7 @@ struct LoadedMap {
     std::shared_ptr<bake::World> world;
     InspectAnswer summary;
     std::shared_ptr<const bake::Inventory> inventory;
+    std::shared_ptr<ChangesSince> changes;
 };
 
 using MapResult = tl::expected<LoadedMap, FailureAnswer>;
@@ -72,7 +73,9 @@ class Worker {
         const MapResult loaded = map_of(request.manifest);
         if (!loaded) return loaded.error();
         const auto start = std::chrono::steady_clock::now();
-        auto baked = bake::bake_sector(*loaded->world, request.sector, request.settings);
+        const trace::FloatMode float_mode;
+        const std::optional<bake::EarlierBake> earlier = read_earlier(request, *loaded->world, *loaded->changes, *store_);
+        auto baked = bake::bake_sector(*loaded->world, request.sector, request.settings, earlier ? &*earlier : nullptr);
         if (!baked) return FailureAnswer{baked.error(), false};
         const auto bytes = bake::encode_sector(baked->sector, baked->warnings);
         if (!bytes) return FailureAnswer{bytes.error(), false};
@@ -84,14 +87,16 @@ class Worker {
         const auto footprint_digest = store_->put(footprint), digest = footprint_digest ? store_->put(*bytes) : footprint_digest;
         if (!digest) return FailureAnswer{digest.error().message, true};
         const Sector& sector = baked->sector;
+        float bound = 0;
+        for (const bake::ProbeRecord& probe : baked->footprint.probes) bound = std::max(bound, probe.bound);
         return BakeAnswer{*digest, static_cast<std::int64_t>(bytes->size()), static_cast<std::int64_t>(sector.probes.size()), static_cast<std::int64_t>(sector.statistics.rays), baked->warnings,
-                          *footprint_digest, loaded->summary.inventory, static_cast<std::int64_t>(footprint.size()), seconds};
+                          *footprint_digest, loaded->summary.inventory, static_cast<std::int64_t>(footprint.size()), seconds, bound};
     }
 
     What perform(const AssessRequest& request) {
         const MapResult loaded = map_of(request.manifest);
         if (!loaded) return loaded.error();
-        return assess_results(request, *loaded->world, *loaded->inventory, *store_);
+        return assess_results(request, *loaded->world, *loaded->changes, *store_);
     }
 
     // Imports a map once, however many requests ask for it at the same time.
@@ -142,7 +147,7 @@ class Worker {
         auto inventory = std::make_shared<const bake::Inventory>(bake::take_inventory(**world));
         const auto inventory_digest = store_->put(bake::encode_inventory(*inventory));
         if (!inventory_digest) return tl::unexpected(FailureAnswer{inventory_digest.error().message, true});
-        LoadedMap loaded{*world, {map->content, *inventory_digest, (*world)->sectors_with_ground(), static_cast<std::int64_t>(map->objects.size()), 0, map->warnings}, std::move(inventory)};
+        LoadedMap loaded{*world, {map->content, *inventory_digest, (*world)->sectors_with_ground(), static_cast<std::int64_t>(map->objects.size()), 0, map->warnings}, inventory, std::make_shared<ChangesSince>(inventory, *store_)};
         loaded.summary.warnings.insert(loaded.summary.warnings.end(), (*world)->warnings().begin(), (*world)->warnings().end());
         for (const map::Object& object : map->objects) {
             for (const map::Primitive& primitive : map->meshes[object.mesh].primitives) loaded.summary.triangle_count += static_cast<std::int64_t>(primitive.triangles.size());

@@ -46,11 +46,14 @@ map::Digest digest_from(const Json& json) {
     return *digest;
 }
 
+Json to_json(const ResultDigests& result) { return {to_hex(result.file), to_hex(result.footprint), to_hex(result.inventory)}; }
+ResultDigests result_from(const Json& json) { return {digest_from(json.at(0)), digest_from(json.at(1)), digest_from(json.at(2))}; }
+
 Json to_json(const AssessRequest& request) {
     Json sectors = Json::array();
     for (const AssessRequest::Sector& sector : request.sectors) {
         Json candidates = Json::array();
-        for (const auto& [footprint, inventory] : sector.candidates) candidates.push_back({to_hex(footprint), to_hex(inventory)});
+        for (const ResultDigests& candidate : sector.candidates) candidates.push_back(to_json(candidate));
         sectors.push_back({to_json(sector.sector), std::move(candidates)});
     }
     return {{"id", request.id}, {"op", "assess"}, {"map", to_hex(request.manifest)}, {"settings", to_json(request.settings)}, {"sectors", std::move(sectors)}};
@@ -61,14 +64,14 @@ AssessRequest assess_request_from(const Json& json) {
     for (const Json& sector : json.at("sectors")) {
         AssessRequest::Sector& asked = request.sectors.emplace_back();
         asked.sector = sector_from(sector.at(0));
-        for (const Json& candidate : sector.at(1)) asked.candidates.push_back({digest_from(candidate.at(0)), digest_from(candidate.at(1))});
+        for (const Json& candidate : sector.at(1)) asked.candidates.push_back(result_from(candidate));
     }
     return request;
 }
 
 Json to_json(const AssessAnswer& answer) {
     Json sectors = Json::array(), changes = Json::array();
-    for (const AssessAnswer::Sector& sector : answer.sectors) sectors.push_back({static_cast<unsigned>(sector.verdict), sector.candidate, sector.bound, sector.reason});
+    for (const AssessAnswer::Sector& sector : answer.sectors) sectors.push_back({static_cast<unsigned>(sector.verdict), sector.candidate, sector.bound, sector.share, sector.reason});
     for (const AssessAnswer::Change& change : answer.changes) {
         const map::Bounds& b = change.bounds;
         changes.push_back({change.what, b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z});
@@ -81,7 +84,7 @@ AssessAnswer assess_answer_from(const Json& json) {
     for (const Json& sector : json.at("verdicts")) {
         const auto verdict = integer<std::uint8_t>(sector.at(0));
         if (verdict > static_cast<std::uint8_t>(bake::Verdict::rebake)) throw Json::other_error::create(504, "unknown verdict", nullptr);
-        answer.sectors.push_back({static_cast<bake::Verdict>(verdict), integer<std::size_t>(sector.at(1)), sector.at(2).get<float>(), sector.at(3).get<std::string>()});
+        answer.sectors.push_back({static_cast<bake::Verdict>(verdict), integer<std::size_t>(sector.at(1)), sector.at(2).get<float>(), sector.at(3).get<float>(), sector.at(4).get<std::string>()});
     }
     for (const Json& change : json.at("changes")) {
         const auto number = [&](std::size_t n) { return change.at(n).get<float>(); };
@@ -108,7 +111,9 @@ std::string encode(const WorkerRequest& request) {
     if (const auto* inspect = std::get_if<InspectRequest>(&request)) return line({{"id", inspect->id}, {"op", "inspect"}, {"map", to_hex(inspect->manifest)}});
     if (const auto* assess = std::get_if<AssessRequest>(&request)) return line(to_json(*assess));
     const auto& bake = std::get<BakeRequest>(request);
-    return line({{"id", bake.id}, {"op", "bake"}, {"map", to_hex(bake.manifest)}, {"sector", to_json(bake.sector)}, {"settings", to_json(bake.settings)}});
+    Json json = {{"id", bake.id}, {"op", "bake"}, {"map", to_hex(bake.manifest)}, {"sector", to_json(bake.sector)}, {"settings", to_json(bake.settings)}};
+    if (bake.earlier) json["earlier"] = to_json(*bake.earlier);
+    return line(json);
 }
 
 std::optional<WorkerRequest> decode_request(std::string_view text) {
@@ -118,7 +123,9 @@ std::optional<WorkerRequest> decode_request(std::string_view text) {
         if (op == "assess") return assess_request_from(json);
         if (op != "inspect" && op != "bake") throw Json::other_error::create(503, "unknown request", nullptr);
         if (op == "inspect") return InspectRequest{id, digest_from(json.at("map"))};
-        return BakeRequest{id, digest_from(json.at("map")), sector_from(json.at("sector")), settings_from(json.at("settings"))};
+        BakeRequest bake{id, digest_from(json.at("map")), sector_from(json.at("sector")), settings_from(json.at("settings")), {}};
+        if (json.contains("earlier")) bake.earlier = result_from(json.at("earlier"));
+        return bake;
     });
 }
 
@@ -130,7 +137,7 @@ std::string encode(const WorkerAnswer& answer) {
         json.update({{"content", to_hex(inspected->content)}, {"inventory", to_hex(inspected->inventory)}, {"sectors", std::move(sectors)}, {"objects", inspected->object_count}, {"triangles", inspected->triangle_count}, {"warnings", inspected->warnings}});
     } else if (const auto* baked = std::get_if<BakeAnswer>(&answer.what)) {
         json.update({{"result", to_hex(baked->result)}, {"size", baked->size_bytes}, {"probes", baked->probes}, {"rays", baked->rays}, {"warnings", baked->warnings},
-                     {"footprint", to_hex(baked->footprint)}, {"inventory", to_hex(baked->inventory)}, {"footprint_size", baked->footprint_bytes}, {"seconds", baked->seconds}});
+                     {"footprint", to_hex(baked->footprint)}, {"inventory", to_hex(baked->inventory)}, {"footprint_size", baked->footprint_bytes}, {"seconds", baked->seconds}, {"bound", baked->bound}});
     } else if (const auto* assessed = std::get_if<AssessAnswer>(&answer.what)) {
         json.update(to_json(*assessed));
     } else {
@@ -148,7 +155,7 @@ std::optional<WorkerAnswer> decode_answer(std::string_view text) {
             answer.what = FailureAnswer{json.at("error").get<std::string>(), json.at("retry").get<bool>()};
         } else if (json.contains("result")) {
             answer.what = BakeAnswer{digest_from(json.at("result")), integer<std::int64_t>(json.at("size")), integer<std::int64_t>(json.at("probes")), integer<std::int64_t>(json.at("rays")), json.at("warnings").get<std::vector<std::string>>(),
-                                     digest_from(json.at("footprint")), digest_from(json.at("inventory")), integer<std::int64_t>(json.at("footprint_size")), json.at("seconds").get<double>()};
+                                     digest_from(json.at("footprint")), digest_from(json.at("inventory")), integer<std::int64_t>(json.at("footprint_size")), json.at("seconds").get<double>(), json.at("bound").get<float>()};
         } else if (json.contains("verdicts")) {
             answer.what = assess_answer_from(json);
         } else {

@@ -22,22 +22,25 @@ struct InspectRequest {
     map::Digest manifest;
 };
 
+// A result with the records it rests on.
+struct ResultDigests {
+    map::Digest file, footprint, inventory;  // inventory: of the map of which it was baked
+};
+
 // Bakes one sector into the store.
 struct BakeRequest {
     std::uint64_t id = 0;
     map::Digest manifest;
     map::SectorCoordinate sector;
     bake::Settings settings;
+    std::optional<ResultDigests> earlier;  // of another map, with these settings; what holds of it is taken over
 };
 
 // Asks which older results of sectors hold for a map.
 struct AssessRequest {
-    struct Candidate {
-        map::Digest footprint, inventory;  // of the result, and of the map of which it was baked
-    };
     struct Sector {
         map::SectorCoordinate sector;
-        std::vector<Candidate> candidates;  // the likeliest first
+        std::vector<ResultDigests> candidates;  // the likeliest first
     };
     std::uint64_t id = 0;
     map::Digest manifest;
@@ -61,14 +64,18 @@ struct BakeAnswer {
     std::vector<std::string> warnings;  // one sentence each
     map::Digest footprint = {}, inventory = {};  // blobs: what the result depends on, and the map of which it was baked
     std::int64_t footprint_bytes = 0;
-    double seconds = 0;  // it took, beside other sectors
+    double seconds = 0;  // that a bake from nothing takes, beside other sectors
+    float bound = 0;     // on how far it is off, where probes of another map's result were taken over (assessment.h)
 };
+
+[[nodiscard]] inline ResultDigests digests_of(const BakeAnswer& result) { return {result.result, result.footprint, result.inventory}; }
 
 struct AssessAnswer {
     struct Sector {
         bake::Verdict verdict = bake::Verdict::rebake;
-        std::size_t candidate = 0;  // unless rebake
+        std::size_t candidate = 0;  // of a rebake the one with the most to take over
         float bound = 0;
+        float share = 1;            // of its probes, that a rebake has to bake
         std::string reason;         // one sentence; empty of a hit
     };
     // Something that is not as it was in the map of a result, with where it is and was.

@@ -27,6 +27,7 @@ struct Setup {
     bake::RayLog rays;
     [[nodiscard]] std::size_t ray_count() const { return rays.paths.size() + rays.shadows.size(); }
     std::unique_ptr<RawEmbree> embree;
+    map::SectorCoordinate sector;  // of the probes
     bake::Settings settings;
 };
 
@@ -36,7 +37,7 @@ std::uint64_t integrate_all(bake::RayLog* log = nullptr, bake::FootprintRecorder
     const trace::FloatMode float_mode;
     std::uint64_t rays = 0;
     for (const glm::ivec3& probe : setup->probes) {
-        if (footprint != nullptr) footprint->begin();
+        if (footprint != nullptr) footprint->begin(bake::patch_of(setup->sector, probe));
         const bake::ProbeLight light = bake::integrate_probe(*setup->scene, setup->world->lights(), probe, *setup->samples, {setup->settings.bounces, setup->settings.reach_m, 0}, {footprint, log});
         rays += light.rays + light.shadow_rays;
     }
@@ -49,7 +50,7 @@ bool prepare(const std::string& path) {
     setup.emplace();
     setup->world = std::move(world);
     setup->sectors = setup->world->sectors_with_ground();
-    const map::SectorCoordinate middle = setup->sectors[setup->sectors.size() / 2];
+    const map::SectorCoordinate middle = setup->sector = setup->sectors[setup->sectors.size() / 2];
     bake::Settings few = setup->settings;
     few.rays = 16;
     const Sector sector = bake::bake_sector(*setup->world, middle, few).value().sector;
@@ -99,17 +100,15 @@ BENCHMARK(bake_over_embree)->Unit(benchmark::kMillisecond)->Iterations(15);
 void footprint_over_none(benchmark::State& state) {
     const trace::FloatMode float_mode;
     std::vector<double> ratios;
-    const map::SectorCoordinate middle = setup->sectors[setup->sectors.size() / 2];
-    const bake::FootprintGrid grid = bake::footprint_grid(middle, setup->settings.reach_m, setup->scene->bounds().low.z, setup->scene->bounds().high.z);
+    const bake::FootprintGrid grid = bake::footprint_grid(setup->sector, setup->settings.reach_m, setup->scene->bounds().low.z, setup->scene->bounds().high.z);
     for (auto _ : state) {
         const double start = seconds();
         benchmark::DoNotOptimize(integrate_all());
         const double between = seconds();
-        bake::FootprintRecorder recorder(grid);
-        benchmark::DoNotOptimize(integrate_all(nullptr, &recorder));
-        std::vector<std::uint64_t> crossed(grid.column_count());
-        std::vector<std::uint8_t> weights(grid.block_count());
-        recorder.merge_into(crossed, weights);
+        bake::FootprintRecorders recorders(grid);
+        benchmark::DoNotOptimize(integrate_all(nullptr, &recorders.of_this_thread()));
+        bake::Footprint footprint;
+        recorders.store(footprint);
         ratios.push_back((seconds() - between) / (between - start));
     }
     std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());

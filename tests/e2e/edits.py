@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
 """Random edits of a map: after each, what an incremental rebake gives is compared with a bake from nothing in a fresh data folder.
 
-  edits.py --bin DIR [--edits N] [--sequence N] [--seed S] [--rays N] [--plants N] [--region X0,Y0,X1,Y1]
+  edits.py --bin DIR [--edits N] [--sequence N] [--seed S] [--rays N] [--plants N] [--region X0,Y0,X1,Y1] [--generator COMMAND]
 
 At tolerance 0 every byte must be the same. At the default tolerance no coefficient may differ by more than the tolerance. A sequence of edits builds on each other, then the map is
 as it was at first. A failing edit is replayed by --seed of its sequence (told) and --edits up to its number.
+
+The map is the demo's island, or what a generator writes: a command that takes -o FILE, and --edit KIND --edit-seed S for each edit.
 """
 import argparse
 import os
+import random
 import shutil
+import subprocess
 import sys
 import tempfile
 
@@ -43,6 +47,50 @@ def file_error(a, b):
     return max((probe_error(p, q) for p, q in zip(first["probes"], second["probes"])), default=0.0)
 
 
+class DemoMap:
+    """The demo's island, edited in place."""
+
+    NOTHING_TO_BAKE = map_edits.NOTHING_TO_BAKE
+
+    def __init__(self, farm, plants):
+        self.farm = farm
+        self.first = make_island(tempfile.mkdtemp(dir=farm.scratch.name), plants)
+        self.start()
+
+    def start(self):
+        self.edited = map_edits.EditableMap(self.first)
+
+    def edit(self, seed):
+        """The path of the map after one more edit, its kind, and what it did."""
+        kind, what = map_edits.edit(self.edited, seed)
+        return self.edited.write(self.farm.path("map")), kind, what
+
+
+class GeneratedMap:
+    """Written anew for each edit, with all edits so far."""
+
+    KINDS = ("move_tree", "delete_tree", "add_hut", "recolor_terrain_tile", "raise_terrain_tile", "move_light", "edit_shared_mesh", "add_probe", "rename_node", "reorder_buffers")
+    NOTHING_TO_BAKE = ("rename_node", "reorder_buffers")
+
+    def __init__(self, farm, command):
+        self.farm, self.command = farm, command.split()
+        self.start()
+        self.first = self.write(farm.path("first.glb"))[0]
+
+    def start(self):
+        self.edits = []
+
+    def write(self, path):
+        done = subprocess.run([*self.command, *self.edits, "-o", path], capture_output=True, text=True, check=True)
+        return path, done.stderr.strip().splitlines()
+
+    def edit(self, seed):
+        kind = random.Random(seed).choice(self.KINDS)
+        self.edits += ["--edit", kind, "--edit-seed", str(seed)]
+        path, told = self.write(self.farm.path("map.glb"))
+        return path, kind, told[-1]
+
+
 class Trial:
     def __init__(self, options, farm):
         self.options, self.farm = options, farm
@@ -69,14 +117,13 @@ class Trial:
             print(f"FAILED {title}: a coefficient is {error:.3g} of its range off, over the tolerance of {TOLERANCE:.3g}", flush=True)
         return error
 
-    def run_sequence(self, first_map, seed, edits):
+    def run_sequence(self, map_, seed, edits):
         exact_daemon, near_daemon = (self.farm.daemon(f"{kind}_{seed}", "--threads", "2") for kind in ("exact", "near"))
-        first, _ = self.bake(exact_daemon, first_map, f"exact_files_{seed}", "--exact")
-        self.bake(near_daemon, first_map, f"near_files_{seed}")
-        edited = map_edits.EditableMap(first_map)
+        first, _ = self.bake(exact_daemon, map_.first, f"exact_files_{seed}", "--exact")
+        self.bake(near_daemon, map_.first, f"near_files_{seed}")
+        map_.start()
         for number in range(edits):
-            kind, what = map_edits.edit(edited, seed * 1000 + number)
-            path = edited.write(self.farm.path(f"map_{seed}"))
+            path, kind, what = map_.edit(seed * 1000 + number)
             exact, exact_job = self.bake(exact_daemon, path, f"exact_files_{seed}", "--exact")
             near, near_job = self.bake(near_daemon, path, f"near_files_{seed}")
             fresh_daemon = self.farm.daemon("fresh", "--threads", "2")
@@ -89,10 +136,10 @@ class Trial:
             baked = exact_job["sectors_total"] - exact_job["sectors_cached"]
             print(f"{title}: baked {baked} of {exact_job['sectors_total']} exactly, {near_job['sectors_total'] - near_job['sectors_cached'] - near_job['sectors_near']} and {near_job['sectors_near']} near hits "
                   f"(bound {near_job['largest_bound']:.2g}) by default, error {error:.2g}", flush=True)
-            if kind in map_edits.NOTHING_TO_BAKE and baked:
+            if kind in map_.NOTHING_TO_BAKE and baked:
                 self.failures += 1
                 print(f"FAILED {title}: there was nothing to bake", flush=True)
-        undone, job = self.bake(exact_daemon, first_map, f"undone_files_{seed}", "--exact")
+        undone, job = self.bake(exact_daemon, map_.first, f"undone_files_{seed}", "--exact")
         if undone != first or job["sectors_cached"] != job["sectors_total"]:
             self.failures += 1
             print(f"FAILED seed {seed}: undone, {job['sectors_cached']} of {job['sectors_total']} sectors hit", flush=True)
@@ -110,13 +157,14 @@ def main():
     parser.add_argument("--rays", type=int, default=256)
     parser.add_argument("--plants", type=int, default=6000)
     parser.add_argument("--region", default="")
+    parser.add_argument("--generator", help="a command that writes the map and its edits")
     options = parser.parse_args()
     farm = Farm(options.bin)
     try:
         trial = Trial(options, farm)
-        first_map = make_island(tempfile.mkdtemp(dir=farm.scratch.name), options.plants)
+        map_ = GeneratedMap(farm, options.generator) if options.generator else DemoMap(farm, options.plants)
         for number, start in enumerate(range(0, options.edits, options.sequence)):
-            trial.run_sequence(first_map, options.seed + number, min(options.sequence, options.edits - start))
+            trial.run_sequence(map_, options.seed + number, min(options.sequence, options.edits - start))
     finally:
         farm.close()
     print(f"{options.edits} edits, {trial.failures} failures, largest error {trial.largest_error:.3g} of {TOLERANCE:.3g}")

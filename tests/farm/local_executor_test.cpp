@@ -42,7 +42,7 @@ class LocalExecutorTest : public testing::Test {
     void add(std::int32_t behaviour) {
         const std::lock_guard lock(mutex);
         const auto id = static_cast<std::uint64_t>(added++);
-        queue.push_back({id, {}, {behaviour, static_cast<std::int32_t>(id)}, {}});
+        queue.push_back({id, {}, {behaviour, static_cast<std::int32_t>(id)}, {}, {}});
     }
 
     bool wait_for_all() {

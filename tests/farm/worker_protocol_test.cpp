@@ -8,7 +8,7 @@ namespace {
 
 const map::Digest some_digest = map::digest_of(test::bytes_of("some"));
 
-BakeRequest bake_request() { return {UINT64_MAX, some_digest, {-16384, 16384}, {.rays = 17, .bounces = 0, .reach_m = 0.1f, .min_distance_m = 64}}; }
+BakeRequest bake_request() { return {UINT64_MAX, some_digest, {-16384, 16384}, {.rays = 17, .bounces = 0, .reach_m = 0.1f, .min_distance_m = 64}, {}}; }
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     const std::size_t at = text.find(what);
@@ -22,6 +22,12 @@ TEST(WorkerProtocol, RequestsComeBackAsTheyWere) {
     EXPECT_EQ(bake.manifest, some_digest);
     EXPECT_EQ(bake.sector, (map::SectorCoordinate{-16384, 16384}));
     EXPECT_EQ(bake.settings, bake_request().settings);  // the float to its last bit
+    EXPECT_FALSE(bake.earlier);
+    BakeRequest request = bake_request();
+    request.earlier = {some_digest, map::digest_of(test::bytes_of("footprint")), map::digest_of(test::bytes_of("inventory"))};
+    const auto with_earlier = std::get<BakeRequest>(decode_request(encode(WorkerRequest(request))).value());
+    ASSERT_TRUE(with_earlier.earlier);
+    EXPECT_EQ(std::tuple(with_earlier.earlier->file, with_earlier.earlier->footprint, with_earlier.earlier->inventory), std::tuple(some_digest, request.earlier->footprint, request.earlier->inventory));
     const auto inspect = std::get<InspectRequest>(decode_request(encode(WorkerRequest(InspectRequest{3, some_digest}))).value());
     EXPECT_EQ(inspect.id, 3u);
     EXPECT_EQ(inspect.manifest, some_digest);
@@ -29,7 +35,7 @@ TEST(WorkerProtocol, RequestsComeBackAsTheyWere) {
 
 TEST(WorkerProtocol, AssessmentsComeBackAsTheyWere) {
     const map::Digest other = map::digest_of(test::bytes_of("other"));
-    AssessRequest request{4, some_digest, bake_request().settings, {{{1, -2}, {{some_digest, other}, {other, some_digest}}}, {{3, 4}, {}}}};
+    AssessRequest request{4, some_digest, bake_request().settings, {{{1, -2}, {{some_digest, some_digest, other}, {some_digest, other, some_digest}}}, {{3, 4}, {}}}};
     request.settings.tolerance = 0.1f;
     const auto back = std::get<AssessRequest>(decode_request(encode(WorkerRequest(request))).value());
     EXPECT_EQ(back.manifest, some_digest);
@@ -41,16 +47,17 @@ TEST(WorkerProtocol, AssessmentsComeBackAsTheyWere) {
     EXPECT_EQ(back.sectors[0].candidates[1].inventory, some_digest);
 
     AssessAnswer answer;
-    answer.sectors = {{bake::Verdict::near_hit, 1, 0.1f, "why"}, {bake::Verdict::rebake, 0, 0, "because"}};
+    answer.sectors = {{bake::Verdict::near_hit, 1, 0.1f, 0, "why"}, {bake::Verdict::rebake, 0, 0, 0.25f, "because"}};
     answer.changes = {{"a tree moved", {{1, 2, 3}, {4, 5, 6.5f}}}};
     answer.warnings = {"lost"};
     const auto given = std::get<AssessAnswer>(decode_answer(encode(WorkerAnswer{9, answer})).value().what);
     ASSERT_EQ(given.sectors.size(), 2u);
     EXPECT_EQ(std::tuple(given.sectors[0].verdict, given.sectors[0].candidate, given.sectors[0].bound, given.sectors[0].reason), std::tuple(bake::Verdict::near_hit, 1u, 0.1f, "why"));
+    EXPECT_EQ(given.sectors[1].share, 0.25f);
     ASSERT_EQ(given.changes.size(), 1u);
     EXPECT_EQ(given.changes[0].bounds.high, glm::vec3(4, 5, 6.5f));
     EXPECT_EQ(given.warnings, answer.warnings);
-    EXPECT_FALSE(decode_answer(R"({"id":1,"verdicts":[[3,0,0,""]],"changes":[],"warnings":[]})"));
+    EXPECT_FALSE(decode_answer(R"({"id":1,"verdicts":[[3,0,0,0,""]],"changes":[],"warnings":[]})"));
 }
 
 TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
@@ -61,7 +68,8 @@ TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
         EXPECT_EQ(answer.value().id, 9u);
         return answer->what;
     };
-    const auto baked = std::get<BakeAnswer>(round(BakeAnswer{some_digest, 15000, 70, 1LL << 40, {"a wall"}}));
+    const auto baked = std::get<BakeAnswer>(round(BakeAnswer{some_digest, 15000, 70, 1LL << 40, {"a wall"}, some_digest, some_digest, 12, 0.3, 0.1f}));
+    EXPECT_EQ(std::tuple(baked.footprint_bytes, baked.seconds, baked.bound), std::tuple(12, 0.3, 0.1f));
     EXPECT_EQ(std::tuple(baked.result, baked.size_bytes, baked.probes, baked.rays), std::tuple(some_digest, 15000, 70, 1LL << 40));
     EXPECT_EQ(baked.warnings, std::vector<std::string>{"a wall"});
     const auto failure = std::get<FailureAnswer>(round(FailureAnswer{"two\nlines, \"quotes\"", true}));
