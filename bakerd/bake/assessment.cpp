@@ -236,12 +236,12 @@ class Assessor {
 
     // Gives the most that the boxes change of any probe.
     float count_rays(std::span<const Bounds> boxes) {
-        const float gain = std::max(1.0f, footprint_.static_gain);
-        const std::array<float, patch_count> later = later_shares(boxes);
+        const float gain = 1;
+        const std::array<float, quarter_count> later = later_shares(boxes);
         float most = 0;
         for (std::size_t p = 0; p < footprint_.probes.size(); ++p) {
             float& bound = assessment_.probe_bounds[p];
-            float share = later[patch_of(footprint_.sector, footprint_.probes[p].position)] * gain;
+            float share = later[quarter_of(footprint_.sector, footprint_.probes[p].position)] * gain;
             // No need to look for more than what settles it.
             if (!over(bound + share)) share += first_rays().share_of(p, boxes) * gain;
             bound += share;
@@ -315,11 +315,11 @@ class Assessor {
         return false;
     }
 
-    // By patch: of blocks not counted before, where rays crossed one of the boxes' cells.
-    [[nodiscard]] std::array<float, patch_count> later_shares(std::span<const Bounds> boxes) {
+    // By quarter: of blocks not counted before, where rays crossed one of the boxes' cells.
+    [[nodiscard]] std::array<float, quarter_count> later_shares(std::span<const Bounds> boxes) {
         const FootprintGrid& grid = footprint_.grid;
         const glm::vec3 cell(grid.cell_m, grid.cell_m, grid.layer_m), last(grid.columns - 1, grid.rows - 1, grid.layers - 1);
-        std::array<float, patch_count> shares{};
+        std::array<float, quarter_count> shares{};
         for (const Bounds& box : boxes) {
             // Above and below the grid rays go unseen.
             if (box.low.z < grid.low().z || box.high.z > grid.high().z) shares.fill(unbounded);
@@ -334,7 +334,7 @@ class Assessor {
                         const std::size_t block = grid.block(i, j, std::countr_zero(crossed));
                         if (counted_[block]) continue;
                         counted_[block] = true;
-                        for (std::size_t patch = 0; patch < patch_count; ++patch) shares[patch] += weight_of_code(footprint_.weight(block, patch));
+                        for (std::size_t quarter = 0; quarter < quarter_count; ++quarter) shares[quarter] += weight_of_code(footprint_.weight(block, quarter));
                     }
                 }
             }

@@ -5,42 +5,104 @@
 #include <drtv/sector.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <type_traits>
 
 namespace drtv::bake {
 namespace {
 
 // By measurement (CHANGELOG): finer cells do not fit into the record, coarser ones bake sectors again without need. Height tells most: rays pass above
 // what stands on the ground.
-constexpr std::int32_t least_cell_m = 16, least_layer_m = 4;
+constexpr std::int32_t least_cell_m = 16, least_layer_m = 8;
 constexpr std::int32_t most_columns = 80, most_layers = 48;
 // New things may stand as much higher than all others before they are beyond the grid.
 constexpr float headroom_m = 16;
-// Farther away hardly a thing is so large that later rays of a probe find it by more than the tolerance.
-constexpr double near_m = 64;
 
 constexpr int least_weight_exponent = -14;
 
 constexpr std::uint64_t magic = 0x32'50'46'56'54'52'44;  // "DRTVFP2"
 constexpr std::uint32_t most_rays = 1u << 16;
-constexpr std::uint64_t most_probes = no_probe;
 constexpr std::int32_t most_place = 1 << 24;
 
-template <class Probes, class Visit>
-void for_each_column(Probes& probes, Visit visit) {
-    const auto each = [&](auto member) {
-        for (auto& probe : probes) visit(probe.*member);
-    };
-    each(&ProbeRecord::position);
-    each(&ProbeRecord::rays);
-    each(&ProbeRecord::shadow_rays);
-    each(&ProbeRecord::back_hits);
-    each(&ProbeRecord::error);
-    each(&ProbeRecord::bound);
+template <class Number>
+std::uint32_t as_bits(const Number& number) {
+    if constexpr (sizeof number == sizeof(std::uint32_t)) return std::bit_cast<std::uint32_t>(number);
+    else return number;
+}
+
+template <class Number>
+void set_bits(Number& number, std::uint32_t bits) {
+    if constexpr (sizeof number == sizeof bits) number = std::bit_cast<Number>(bits);
+    else number = static_cast<Number>(bits);
+}
+
+// Numbers of one kind, byte by byte: like stands beside like. Those of neighbours differ by little.
+void add_numbers(StoredWriter& writer, std::span<const std::uint32_t> numbers, bool as_differences) {
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+        std::uint32_t before = 0;
+        for (const std::uint32_t number : numbers) {
+            // Zigzag: small ones of either sign have empty upper bytes.
+            const std::uint32_t difference = number - before, value = as_differences ? difference << 1 ^ (0 - (difference >> 31)) : number;
+            writer.add(static_cast<std::uint8_t>(value >> shift));
+            before = number;
+        }
+    }
+}
+
+std::vector<std::uint32_t> read_numbers(StoredReader& reader, std::size_t count, bool as_differences) {
+    std::vector<std::uint32_t> numbers(count);
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+        for (std::uint32_t& number : numbers) number |= std::uint32_t{reader.read<std::uint8_t>()} << shift;
+    }
+    std::uint32_t before = 0;
+    for (std::uint32_t& number : numbers) {
+        if (as_differences) number = before += number >> 1 ^ (0 - (number & 1));
+        else before = number;
+    }
+    return numbers;
+}
+
+// Visits each column of a list of records: (member of a record, whether neighbours differ by little).
+template <class Visit>
+void for_each_column(const std::vector<ProbeRecord>*, Visit visit) {
+    for (glm::length_t axis = 0; axis < 3; ++axis) visit([axis](auto& probe) -> auto& { return probe.position[axis]; }, true);
+    visit([](auto& probe) -> auto& { return probe.rays; }, true);
+    visit([](auto& probe) -> auto& { return probe.shadow_rays; }, true);
+    visit([](auto& probe) -> auto& { return probe.back_hits; }, false);
+    visit([](auto& probe) -> auto& { return probe.error; }, false);
+    visit([](auto& probe) -> auto& { return probe.bound; }, false);
+}
+
+template <class Visit>
+void for_each_column(const std::vector<SolidTest>*, Visit visit) {
+    for (glm::length_t axis = 0; axis < 3; ++axis) visit([axis](auto& test) -> auto& { return test.position[axis]; }, true);
+    visit([](auto& test) -> auto& { return test.to_flip; }, false);
+}
+
+template <class Record>
+void add_records(StoredWriter& writer, const std::vector<Record>& records) {
+    writer.add(static_cast<std::uint32_t>(records.size()));
+    for_each_column(&records, [&](auto member, bool as_differences) {
+        std::vector<std::uint32_t> numbers;
+        for (const Record& record : records) numbers.push_back(as_bits(member(record)));
+        add_numbers(writer, numbers, as_differences);
+    });
+}
+
+template <class Record>
+std::vector<Record> read_records(StoredReader& reader) {
+    const auto count = reader.read<std::uint32_t>();
+    if (count > reader.left()) {
+        reader.refuse();
+        return {};
+    }
+    std::vector<Record> records(count);
+    for_each_column(&records, [&](auto member, bool as_differences) {
+        const std::vector<std::uint32_t> numbers = read_numbers(reader, count, as_differences);
+        for (std::size_t n = 0; n < count; ++n) set_bits(member(records[n]), numbers[n]);
+    });
+    return records;
 }
 
 // Two codes in a byte.
@@ -61,13 +123,28 @@ std::vector<std::uint8_t> from_pairs(const std::vector<std::uint8_t>& pairs) {
 
 bool is_sound(const FootprintGrid& grid) {
     const auto within = [](std::int32_t value, std::int32_t least, std::int32_t most) { return value >= least && value <= most; };
-    const bool near_inside = within(grid.near_i, 0, grid.columns) && within(grid.near_j, 0, grid.rows) && within(grid.near_columns, 0, grid.columns - grid.near_i) && within(grid.near_rows, 0, grid.rows - grid.near_j);
-    return near_inside && within(grid.cell_m, 1, 1 << 20) && within(grid.layer_m, 1, 1 << 20) && within(grid.columns, 1, 1024) && within(grid.rows, 1, 1024) && within(grid.layers, 1, 64) && within(grid.x, -most_place, most_place) &&
+    return within(grid.cell_m, 1, 1 << 20) && within(grid.layer_m, 1, 1 << 20) && within(grid.columns, 1, 1024) && within(grid.rows, 1, 1024) && within(grid.layers, 1, 64) && within(grid.x, -most_place, most_place) &&
            within(grid.y, -most_place, most_place) && within(grid.z, -most_place, most_place);
 }
 
 // The bytes of a column's layers.
 std::size_t bytes_of_column(const FootprintGrid& grid) { return (static_cast<std::size_t>(grid.layers) + 7) / 8; }
+
+// Only these have weights.
+std::vector<std::size_t> crossed_blocks(const Footprint& footprint) {
+    const FootprintGrid& grid = footprint.grid;
+    std::vector<bool> crossed(grid.block_count());
+    for (std::int32_t j = 0; j < grid.rows; ++j) {
+        for (std::int32_t i = 0; i < grid.columns; ++i) {
+            for (std::uint64_t layers = footprint.crossed[grid.column(i, j)]; layers != 0; layers &= layers - 1) crossed[grid.block(i, j, std::countr_zero(layers))] = true;
+        }
+    }
+    std::vector<std::size_t> blocks;
+    for (std::size_t block = 0; block < crossed.size(); ++block) {
+        if (crossed[block]) blocks.push_back(block);
+    }
+    return blocks;
+}
 
 }  // namespace
 
@@ -76,17 +153,12 @@ FootprintGrid footprint_grid(map::SectorCoordinate sector, float distance_m, flo
     FootprintGrid grid;
     grid.cell_m = least_cell_m;
     while (side_m + 2 * double{distance_m} > static_cast<double>(most_columns - 2) * grid.cell_m) grid.cell_m *= 2;
-    const auto first = [&](std::int32_t s, double around_m) { return static_cast<std::int32_t>(std::floor((s * side_m - around_m) / grid.cell_m)); };
-    const auto end = [&](std::int32_t s, double around_m) { return static_cast<std::int32_t>(std::ceil(((s + 1) * side_m + around_m) / grid.cell_m)); };
-    grid.x = first(sector.i, distance_m);
-    grid.y = first(sector.j, distance_m);
-    grid.columns = end(sector.i, distance_m) - grid.x;
-    grid.rows = end(sector.j, distance_m) - grid.y;
-    const double near = std::min<double>(near_m, distance_m);
-    grid.near_i = first(sector.i, near) - grid.x;
-    grid.near_j = first(sector.j, near) - grid.y;
-    grid.near_columns = end(sector.i, near) - grid.x - grid.near_i;
-    grid.near_rows = end(sector.j, near) - grid.y - grid.near_j;
+    const auto first = [&](std::int32_t s) { return static_cast<std::int32_t>(std::floor((s * side_m - double{distance_m}) / grid.cell_m)); };
+    const auto end = [&](std::int32_t s) { return static_cast<std::int32_t>(std::ceil(((s + 1) * side_m + double{distance_m}) / grid.cell_m)); };
+    grid.x = first(sector.i);
+    grid.y = first(sector.j);
+    grid.columns = end(sector.i) - grid.x;
+    grid.rows = end(sector.j) - grid.y;
     if (!(low_m < high_m)) low_m = high_m = 0;
     low_m -= headroom_m;
     high_m += headroom_m;
@@ -97,25 +169,24 @@ FootprintGrid footprint_grid(map::SectorCoordinate sector, float distance_m, flo
     return grid;
 }
 
-std::size_t patch_of(map::SectorCoordinate sector, const placement::Position& probe) {
-    constexpr std::int64_t side = 4, sector_units = placement::sector_size_m * placement::units_per_m, patch_units = sector_units / side;
-    // Wherever it stands: it need only be the same each time.
-    const auto along = [](std::int64_t units, std::int64_t s) { return static_cast<std::size_t>(std::clamp<std::int64_t>((units - s * sector_units) / patch_units, 0, side - 1)); };
-    return along(probe.y, sector.j) * side + along(probe.x, sector.i);
+std::size_t quarter_of(map::SectorCoordinate sector, const placement::Position& probe) {
+    constexpr std::int64_t sector_units = placement::sector_size_m * placement::units_per_m;
+    const auto upper = [](std::int64_t units, std::int64_t s) { return units >= s * sector_units + sector_units / 2 ? std::size_t{1} : std::size_t{0}; };
+    return upper(probe.y, sector.j) * 2 + upper(probe.x, sector.i);
 }
 
 std::uint8_t weight_code(float weight) {
     if (!(weight > 0)) return 0;
-    // Exponent and first digit of the mantissa, the rest rounded up: 2^-14 is 1, and 1.5 times as much 2.
-    const std::uint32_t bits = std::bit_cast<std::uint32_t>(weight) + 0x3FFFFF;
-    const std::int32_t code = static_cast<std::int32_t>(bits >> 22) - 2 * (127 + least_weight_exponent) + 1;
+    // The exponent, rounded up: 2^-14 is 1.
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(weight) + 0x7FFFFF;
+    const std::int32_t code = static_cast<std::int32_t>(bits >> 23) - (127 + least_weight_exponent) + 1;
     return static_cast<std::uint8_t>(std::clamp<std::int32_t>(code, 1, most_weight_code));
 }
 
 float weight_of_code(std::uint8_t code) {
     if (code == 0) return 0;
     if (code >= most_weight_code) return 1;
-    return std::bit_cast<float>(static_cast<std::uint32_t>(code - 1 + 2 * (127 + least_weight_exponent)) << 22);
+    return std::bit_cast<float>(static_cast<std::uint32_t>(code - 1 + 127 + least_weight_exponent) << 23);
 }
 
 std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
@@ -128,27 +199,17 @@ std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
     writer.add(footprint.static_gain);
     writer.add(footprint.placement_m);
     writer.add(footprint.min_distance_m);
-    writer.add(static_cast<std::uint64_t>(footprint.probes.size()));
-    // Kind by kind: like stands beside like.
-    for_each_column(footprint.probes, [&](const auto& value) { writer.add(value); });
+    add_records(writer, footprint.probes);
     writer.add(footprint.grid);
-    for (const std::uint64_t column : footprint.crossed) {
-        for (std::size_t byte = 0; byte < bytes_of_column(footprint.grid); ++byte) writer.add(static_cast<std::uint8_t>(column >> 8 * byte));
+    for (std::size_t byte = 0; byte < bytes_of_column(footprint.grid); ++byte) {
+        for (const std::uint64_t column : footprint.crossed) writer.add(static_cast<std::uint8_t>(column >> 8 * byte));
     }
-    writer.add_all(in_pairs(footprint.weights));
-    // Axis by axis, as differences: neighbours of a lattice are alike.
-    for (glm::length_t axis = 0; axis < 3; ++axis) {
-        std::vector<std::int32_t> differences;
-        std::int32_t before = 0;
-        for (const SolidTest& test : footprint.solid_tests) {
-            differences.push_back(static_cast<std::int32_t>(static_cast<std::uint32_t>(test.position[axis]) - static_cast<std::uint32_t>(before)));
-            before = test.position[axis];
-        }
-        writer.add_all(differences);
+    std::vector<std::uint8_t> weights;
+    for (const std::size_t block : crossed_blocks(footprint)) {
+        for (std::size_t quarter = 0; quarter < quarter_count; ++quarter) weights.push_back(footprint.weight(block, quarter));
     }
-    std::vector<std::uint8_t> to_flip;
-    for (const SolidTest& test : footprint.solid_tests) to_flip.push_back(test.to_flip);
-    writer.add_all(to_flip);
+    writer.add_all(in_pairs(weights));
+    add_records(writer, footprint.solid_tests);
     return writer.compressed();
 }
 
@@ -163,33 +224,21 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     footprint.static_gain = reader.read<float>();
     footprint.placement_m = reader.read<float>();
     footprint.min_distance_m = reader.read<float>();
-    const auto probes = reader.read<std::uint64_t>();
-    if (probes > most_probes) return std::nullopt;
-    footprint.probes.resize(probes);
-    for_each_column(footprint.probes, [&](auto& value) { value = reader.read<std::remove_reference_t<decltype(value)>>(); });
+    footprint.probes = read_records<ProbeRecord>(reader);
     footprint.grid = reader.read<FootprintGrid>();
     if (!reader.sound() || !is_sound(footprint.grid)) return std::nullopt;
     footprint.crossed.resize(footprint.grid.column_count());
-    for (std::uint64_t& column : footprint.crossed) {
-        for (std::size_t byte = 0; byte < bytes_of_column(footprint.grid); ++byte) column |= std::uint64_t{reader.read<std::uint8_t>()} << 8 * byte;
+    for (std::size_t byte = 0; byte < bytes_of_column(footprint.grid); ++byte) {
+        for (std::uint64_t& column : footprint.crossed) column |= std::uint64_t{reader.read<std::uint8_t>()} << 8 * byte;
     }
-    footprint.weights = from_pairs(reader.read_all<std::uint8_t>());
-    std::array<std::vector<std::int32_t>, 3> differences;
-    for (auto& axis : differences) axis = reader.read_all<std::int32_t>();
-    const auto to_flip = reader.read_all<std::uint8_t>();
-    if (!reader.complete() || footprint.rays == 0 || footprint.rays > most_rays) return std::nullopt;
-    for (const auto& axis : differences) {
-        if (axis.size() != to_flip.size()) return std::nullopt;
-    }
-    // Codes come in pairs: of an odd number of them one is too many.
-    const std::size_t weights = Footprint::weight_count(footprint.grid);
-    if (footprint.weights.size() != weights + weights % 2) return std::nullopt;
-    footprint.weights.resize(weights);
-    glm::uvec3 position(0);  // odd bytes may wrap around
-    for (std::size_t n = 0; n < to_flip.size(); ++n) {
-        position += glm::uvec3(glm::ivec3(differences[0][n], differences[1][n], differences[2][n]));
-        footprint.solid_tests.push_back({placement::Position(position), to_flip[n]});
-    }
+    for (std::uint64_t& column : footprint.crossed) column &= layers_between(0, footprint.grid.layers - 1);
+    const std::vector<std::uint8_t> weights = from_pairs(reader.read_all<std::uint8_t>());
+    footprint.solid_tests = read_records<SolidTest>(reader);
+    if (!reader.complete() || footprint.rays == 0 || footprint.rays > most_rays || footprint.probes.size() > max_probes) return std::nullopt;
+    const std::vector<std::size_t> blocks = crossed_blocks(footprint);
+    if (weights.size() != blocks.size() * quarter_count) return std::nullopt;
+    footprint.weights.resize(footprint.grid.block_count() * quarter_count);
+    for (std::size_t n = 0; n < blocks.size(); ++n) std::copy_n(weights.begin() + static_cast<std::ptrdiff_t>(n * quarter_count), quarter_count, footprint.weights.begin() + static_cast<std::ptrdiff_t>(blocks[n] * quarter_count));
     return footprint;
 }
 

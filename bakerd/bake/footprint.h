@@ -15,30 +15,21 @@
 namespace drtv::bake {
 
 // The space around a sector, as far as its rays go, in cells that are aligned to the world: columns side by side, at most 64 layers high, some way above and below
-// what stands there. Where it ends upwards and downwards, rays go on unseen. Weights are kept of blocks: near the sector of 1 x 1 x 4 cells, farther away of
-// 2 x 2 x 4.
+// what stands there. Where it ends upwards and downwards, rays go on unseen. Weights are kept of blocks of 2 x 2 x 2 cells.
 struct FootprintGrid {
     std::int32_t cell_m = 0, layer_m = 0;  // width and height of a cell, powers of two
     std::int32_t x = 0, y = 0, z = 0;      // the first cell, counted in cells and layers from the world's origin
     std::int32_t columns = 0, rows = 0, layers = 0;
-    // The first column near the sector, counted from the grid's, and how many.
-    std::int32_t near_i = 0, near_j = 0, near_columns = 0, near_rows = 0;
 
     bool operator==(const FootprintGrid&) const = default;
     [[nodiscard]] std::size_t column_count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
     [[nodiscard]] std::size_t column(std::int32_t i, std::int32_t j) const { return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i); }
-
-    // A column's blocks one above the other, those near the sector first.
-    static constexpr std::int32_t block_bits = 2;  // 4 layers
-    [[nodiscard]] std::size_t blocks_of_column() const { return static_cast<std::size_t>((layers + (1 << block_bits) - 1) >> block_bits); }
-    [[nodiscard]] std::size_t near_block_count() const { return static_cast<std::size_t>(near_columns) * static_cast<std::size_t>(near_rows) * blocks_of_column(); }
-    [[nodiscard]] std::size_t block_count() const { return near_block_count() + static_cast<std::size_t>((columns + 1) >> 1) * static_cast<std::size_t>((rows + 1) >> 1) * blocks_of_column(); }
+    // A column's blocks stand one above the other.
+    [[nodiscard]] std::size_t block_count() const { return lowest_block(0, (rows + 1) & ~1); }
     [[nodiscard]] std::size_t lowest_block(std::int32_t i, std::int32_t j) const {
-        const std::int32_t from_i = i - near_i, from_j = j - near_j;
-        if (from_i >= 0 && from_i < near_columns && from_j >= 0 && from_j < near_rows) return static_cast<std::size_t>(from_j * near_columns + from_i) * blocks_of_column();
-        return near_block_count() + static_cast<std::size_t>((j >> 1) * ((columns + 1) >> 1) + (i >> 1)) * blocks_of_column();
+        return (static_cast<std::size_t>(j >> 1) * static_cast<std::size_t>((columns + 1) >> 1) + static_cast<std::size_t>(i >> 1)) * static_cast<std::size_t>((layers + 1) >> 1);
     }
-    [[nodiscard]] std::size_t block(std::int32_t i, std::int32_t j, std::int32_t layer) const { return lowest_block(i, j) + static_cast<std::size_t>(layer >> block_bits); }
+    [[nodiscard]] std::size_t block(std::int32_t i, std::int32_t j, std::int32_t layer) const { return lowest_block(i, j) + static_cast<std::size_t>(layer >> 1); }
     // World metres.
     [[nodiscard]] glm::vec3 low() const { return {x * cell_m, y * cell_m, z * layer_m}; }
     [[nodiscard]] glm::vec3 high() const { return {(x + columns) * cell_m, (y + rows) * cell_m, (z + layers) * layer_m}; }
@@ -50,14 +41,14 @@ struct FootprintGrid {
 // Rays are noted by points so many cells' widths apart.
 inline constexpr float footprint_step = 0.5f;
 
-// Probes side by side share their weights of blocks near the sector: 4 x 4 patches of 16 m.
-inline constexpr std::size_t patch_count = 16;
-[[nodiscard]] std::size_t patch_of(map::SectorCoordinate sector, const placement::Position& probe);
+// Probes of a quarter of the sector share their weights: what many of them hardly see, some see well.
+inline constexpr std::size_t quarter_count = 4;
+[[nodiscard]] std::size_t quarter_of(map::SectorCoordinate sector, const placement::Position& probe);
 
 // Layers of a column, one bit each from the lowest, from one to another, both counted.
 [[nodiscard]] constexpr std::uint64_t layers_between(std::int32_t low, std::int32_t high) { return (~std::uint64_t{0} >> (63 - (high - low))) << low; }
 
-// A weight in four bits, rounded up to half an octave: 0 means never crossed, 15 more than can be told.
+// A weight in four bits, rounded up to a power of two: 0 means never crossed, 15 more than can be told.
 inline constexpr std::uint8_t most_weight_code = 15;
 [[nodiscard]] std::uint8_t weight_code(float weight);
 [[nodiscard]] float weight_of_code(std::uint8_t code);
@@ -100,21 +91,12 @@ struct Footprint {
     // Where rays went; the probes' first ones need no record: they follow from where the probes stand.
     FootprintGrid grid;
     std::vector<std::uint64_t> crossed;  // by column: its layers that a ray crossed
-    // The largest share in a coefficient of a probe, as a code: of each block near the sector by patch, then by block.
-    std::vector<std::uint8_t> weights;
+    std::vector<std::uint8_t> weights;   // by block and quarter: the largest share in a coefficient of a probe, as a code
     std::vector<SolidTest> solid_tests;    // sorted
 
     bool operator==(const Footprint&) const = default;
 
-    [[nodiscard]] std::uint8_t& weight(std::size_t block, std::size_t patch) { return weights[weight_index(block, patch)]; }
-    [[nodiscard]] std::uint8_t weight(std::size_t block, std::size_t patch) const { return weights[weight_index(block, patch)]; }
-    [[nodiscard]] static std::size_t weight_count(const FootprintGrid& grid) { return grid.block_count() + (patch_count - 1) * grid.near_block_count(); }
-
-  private:
-    [[nodiscard]] std::size_t weight_index(std::size_t block, std::size_t patch) const {
-        const std::size_t near = grid.near_block_count();
-        return block < near ? block * patch_count + patch : block + (patch_count - 1) * near;
-    }
+    [[nodiscard]] std::uint8_t weight(std::size_t block, std::size_t quarter) const { return weights[block * quarter_count + quarter]; }
 };
 
 [[nodiscard]] std::vector<std::uint8_t> encode_footprint(const Footprint& footprint);

@@ -25,9 +25,7 @@ Span between(float low, float high, float origin, float direction) {
 
 FootprintRecorder::FootprintRecorder(const FootprintGrid& grid)
     : grid_(grid), crossed_(static_cast<std::size_t>(grid.columns + 2) * static_cast<std::size_t>(grid.rows + 2)),
-      lowest_blocks_(crossed_.size()), blocks_(grid.block_count() + grid.blocks_of_column()), patches_(1) {
-    most_.grid = grid;
-    most_.weights.resize(Footprint::weight_count(grid));
+      lowest_blocks_(crossed_.size()), blocks_(grid.block_count() + static_cast<std::size_t>((grid.layers + 1) >> 1)), most_(grid.block_count() * quarter_count), quarters_(1) {
     for (std::int32_t j = 0; j < grid.rows + 2; ++j) {
         for (std::int32_t i = 0; i < grid.columns + 2; ++i) {
             // What crosses the border by rounding stands for nothing.
@@ -37,21 +35,21 @@ FootprintRecorder::FootprintRecorder(const FootprintGrid& grid)
     }
 }
 
-void FootprintRecorder::begin(std::size_t patch) {
+void FootprintRecorder::begin(std::size_t quarter) {
     if (++probe_ == 1u << (32 - path_bits)) {
         for (std::size_t n = 0; n < grid_.block_count(); ++n) {
             fold(n);
             blocks_[n].seen = 0;
         }
         probe_ = 1;
-        patches_.resize(1);
+        quarters_.resize(1);
     }
-    patches_.push_back(static_cast<std::uint8_t>(patch));
+    quarters_.push_back(static_cast<std::uint8_t>(quarter));
 }
 
 void FootprintRecorder::fold(std::size_t block) {
     if (block >= grid_.block_count()) return;
-    std::uint8_t& most = most_.weight(block, patches_[blocks_[block].seen >> path_bits]);
+    std::uint8_t& most = most_[block * quarter_count + quarters_[blocks_[block].seen >> path_bits]];
     most = std::max(most, weight_code(blocks_[block].share));
     blocks_[block].share = 0;
 }
@@ -89,9 +87,11 @@ void FootprintRecorder::cross(const trace::Ray& ray, float length_m, Visit visit
         const auto lowest = static_cast<std::int32_t>(std::min(std::max(height - rise, 0.0f), top)), highest = static_cast<std::int32_t>(std::min(std::max(height + rise, 0.0f), top));
         const auto column = static_cast<std::size_t>(j * pitch + i);
         crossed_[column] |= layers_between(lowest, highest);
-        const std::int32_t low_block = lowest_blocks_[column] + (lowest >> FootprintGrid::block_bits), high_block = lowest_blocks_[column] + (highest >> FootprintGrid::block_bits);
+        const std::int32_t low_block = lowest_blocks_[column] + (lowest >> 1), high_block = lowest_blocks_[column] + (highest >> 1);
         if (low_block == last_low && high_block == last_high) continue;
-        for (std::int32_t block = low_block; block <= high_block; ++block) visit(static_cast<std::size_t>(block));
+        for (std::int32_t block = low_block; block <= high_block; ++block) {
+            if (block < last_low || block > last_high) visit(static_cast<std::size_t>(block));
+        }
         last_low = low_block;
         last_high = high_block;
     }
@@ -117,7 +117,7 @@ void FootprintRecorder::merge_into(Footprint& footprint) {
         for (std::int32_t i = 0; i < grid_.columns; ++i) footprint.crossed[grid_.column(i, j)] |= crossed_[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.columns + 2) + static_cast<std::size_t>(i)];
     }
     for (std::size_t n = 0; n < grid_.block_count(); ++n) fold(n);
-    for (std::size_t n = 0; n < footprint.weights.size(); ++n) footprint.weights[n] = std::max(footprint.weights[n], most_.weights[n]);
+    for (std::size_t n = 0; n < footprint.weights.size(); ++n) footprint.weights[n] = std::max(footprint.weights[n], most_[n]);
 }
 
 }  // namespace drtv::bake

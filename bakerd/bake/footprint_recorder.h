@@ -15,8 +15,8 @@ class FootprintRecorder {
   public:
     explicit FootprintRecorder(const FootprintGrid& grid);
 
-    // What follows is another probe's, which stands in that patch: shares add up within one, and the largest of all counts.
-    void begin(std::size_t patch);
+    // What follows is another probe's, which stands in that quarter: shares add up within one, and the largest of all counts.
+    void begin(std::size_t quarter);
 
     // A part of the path of that number, as far as `length_m`: a change anywhere on it changes what the path brings by at most `share` of a coefficient. Of
     // a path's parts the first through a block counts alone: later ones must not weigh more.
@@ -45,8 +45,8 @@ class FootprintRecorder {
     std::vector<std::uint64_t> crossed_;  // by column; with a border of one, where a walk may end by rounding
     std::vector<std::int32_t> lowest_blocks_;  // by column, likewise
     std::vector<Block> blocks_;
-    Footprint most_;                      // weights of the probes before
-    std::vector<std::uint8_t> patches_;   // by probe
+    std::vector<std::uint8_t> most_;      // of the probes before, as codes by block and quarter
+    std::vector<std::uint8_t> quarters_;   // by probe
     std::uint32_t probe_ = 0;
 };
 
@@ -61,7 +61,7 @@ class FootprintRecorders {
     void store(Footprint& footprint) {
         footprint.grid = grid_;
         footprint.crossed.assign(grid_.column_count(), 0);
-        footprint.weights.assign(Footprint::weight_count(grid_), 0);
+        footprint.weights.assign(grid_.block_count() * quarter_count, 0);
         merge_into(footprint);
     }
 

@@ -265,7 +265,7 @@ tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoor
             }
             const trace::FloatMode task_float_mode;
             FootprintRecorder& recorder = recorders.of_this_thread();
-            recorder.begin(patch_of(coordinate, positions[p]));
+            recorder.begin(quarter_of(coordinate, positions[p]));
             lights[p] = encoded(positions[p], integrate_probe(*scene, world.lights(), positions[p], *samples, {settings.bounces, settings.reach_m, settings.error}, {&recorder, nullptr}));
         });
     };

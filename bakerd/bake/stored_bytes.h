@@ -66,6 +66,8 @@ class StoredReader {
         return {letters.begin(), letters.end()};
     }
 
+    [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
+    void refuse() { sound_ = false; }
     // All was there, and all was read.
     [[nodiscard]] bool complete() const { return sound_ && at_ == bytes_.size(); }
     [[nodiscard]] bool sound() const { return sound_; }

@@ -37,7 +37,7 @@ std::uint64_t integrate_all(bake::RayLog* log = nullptr, bake::FootprintRecorder
     const trace::FloatMode float_mode;
     std::uint64_t rays = 0;
     for (const glm::ivec3& probe : setup->probes) {
-        if (footprint != nullptr) footprint->begin(bake::patch_of(setup->sector, probe));
+        if (footprint != nullptr) footprint->begin(bake::quarter_of(setup->sector, probe));
         const bake::ProbeLight light = bake::integrate_probe(*setup->scene, setup->world->lights(), probe, *setup->samples, {setup->settings.bounces, setup->settings.reach_m, 0}, {footprint, log});
         rays += light.rays + light.shadow_rays;
     }
