@@ -1,6 +1,7 @@
 #include "bakerd/bake/assessment.h"
 
 #include "bakerd/bake/integrate.h"
+#include "bakerd/bake/static_gain.h"
 
 #include <drtv/conventions.h>
 
@@ -236,7 +237,7 @@ class Assessor {
 
     // Gives the most that the boxes change of any probe.
     float count_rays(std::span<const Bounds> boxes) {
-        const float gain = 1;
+        const float gain = std::max({1.0f, footprint_.static_gain, static_gain(world_.lights(), boxes, settings_)});
         const std::array<float, quarter_count> later = later_shares(boxes);
         float most = 0;
         for (std::size_t p = 0; p < footprint_.probes.size(); ++p) {

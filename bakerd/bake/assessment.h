@@ -46,8 +46,7 @@ struct Assessment {
 // Whether the result of a bake with `settings` holds for the map of `world`; `changes` are those from the baked map to it. `tolerance` is the largest bound of
 // a near hit; 0 asks for the same bytes. The bound covers all changes together, and edits in between are none of its concern: one that is undone counts nothing.
 //
-// Ranges of coefficients: sky visibility 1, radiance transfer 0.2821 (i = 0) and 0.9772 (i > 0), static irradiance static_irradiance_range. What a change
-// brings to static light is bounded as far as no surface stands nearer than 25 cm to a lamp. REQUIRES: a FloatMode on this thread.
+// Ranges of coefficients: sky visibility 1, radiance transfer 0.2821 (i = 0) and 0.9772 (i > 0), static irradiance static_irradiance_range. REQUIRES: a FloatMode on this thread.
 [[nodiscard]] Assessment assess(const Footprint& footprint, const Settings& settings, std::span<const Change> changes, float tolerance, World& world);
 
 // Of the sector's probes those that a bake cannot take over. REQUIRES: the verdict is rebake.

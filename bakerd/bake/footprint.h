@@ -82,7 +82,7 @@ struct Footprint {
     std::uint32_t rays = 0;  // from each probe
     // Nothing is known of how much a change would matter: local transfer, or a number of rays that follows from what they find.
     bool without_bounds = false;
-    // Light that a path can newly find at static lights, over static_irradiance_range; 0 where there are none.
+    // The most that a path can bring from static lights, over static_irradiance_range (lights.h); 0 where there are none.
     float static_gain = 0;
     float placement_m = 0;     // how far around the sector placement looked down its columns
     float min_distance_m = 0;  // between probes

@@ -4,6 +4,7 @@
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/local_encoding.h"
 #include "bakerd/bake/placed_sector.h"
+#include "bakerd/bake/static_gain.h"
 #include "placement/grid.h"
 
 #include <drtv/validate.h>
@@ -185,28 +186,6 @@ tl::expected<void, std::string> store_interiors(const World& world, const Placed
                                       max_interiors, max_interiors_vertices, max_interior_triangles));
 }
 
-// What one path can bring at most from static lights over static_irradiance_range: from each of its bounces, the radiance of a white surface at the brightest of
-// the lights that a probe can know of. A surface is taken to be at least so far from a lamp.
-float static_gain(const StaticLights& lights, std::span<const placement::Position> probes, const Settings& settings) {
-    constexpr float least_lamp_distance_m = 0.25f;
-    const auto within_reach = [&](const glm::vec3& place, float radius_m) {
-        return std::ranges::any_of(probes, [&](const placement::Position& probe) { return glm::distance(placement::metres(probe), place) - radius_m <= settings.reach_m; });
-    };
-    const auto brightest = [](const glm::vec3& light) { return std::max({light.x, light.y, light.z}); };
-    constexpr float reflected = map::max_albedo * std::numbers::inv_pi_v<float>;
-    float most = 0, suns = 0;
-    for (const PointLight& lamp : lights.points()) {
-        if (within_reach(lamp.position, 0)) most = std::max(most, reflected * brightest(lamp.intensity) / (least_lamp_distance_m * least_lamp_distance_m));
-    }
-    for (const EmissiveObject& emissive : lights.emissive()) {
-        if (within_reach(emissive.centre, emissive.radius_m)) most = std::max(most, emissive.radiance);
-    }
-    for (const Sun& sun : lights.suns()) suns += reflected * brightest(sun.irradiance);
-    float bounces = 0, left = 1;
-    for (std::uint32_t bounce = 0; bounce < std::max(settings.bounces, 1u); ++bounce, left *= map::max_albedo) bounces += left;
-    return bounces * (most + suns) / static_irradiance_range;
-}
-
 // By place; one of each. Neighbours test the same points.
 void sort_tests(std::vector<SolidTest>& tests) {
     std::ranges::sort(tests, {}, [](const SolidTest& test) { return std::tuple(test.position.y, test.position.x, test.position.z, test.to_flip); });
@@ -294,7 +273,7 @@ tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoor
     footprint.reach_m = settings.reach_m;
     footprint.rays = settings.rays;
     footprint.without_bounds = settings.local_transfer || settings.error > 0;
-    footprint.static_gain = static_gain(world.lights(), positions, settings);
+    footprint.static_gain = static_gain(world.lights(), *scene, positions, settings);
     footprint.placement_m = placement_margin_m(settings);
     footprint.min_distance_m = settings.min_distance_m;
     for (const BakedProbe& light : lights) footprint.probes.push_back(light.record);

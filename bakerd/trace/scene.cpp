@@ -51,6 +51,20 @@ std::optional<double> height_on_triangle(const map::Object& object, const map::P
     return std::clamp(z_m, std::min({a.z, b.z, c.z}), std::max({a.z, b.z, c.z}));
 }
 
+// From a point to the nearest one of a triangle (Ericson, Real-Time Collision Detection, 5.1.5: by the regions of its corners, edges and face).
+double distance_to_triangle(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 ab = b - a, ac = c - a, ap = point - a, bp = point - b, cp = point - c;
+    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp), d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    if (d1 <= 0 && d2 <= 0) return glm::length(ap);
+    if (d3 >= 0 && d4 <= d3) return glm::length(bp);
+    if (d6 >= 0 && d5 <= d6) return glm::length(cp);
+    const double of_a = d3 * d6 - d5 * d4, of_b = d5 * d2 - d1 * d6, of_c = d1 * d4 - d3 * d2;
+    if (of_c <= 0 && d1 >= 0 && d3 <= 0) return glm::length(ap - ab * (d1 / (d1 - d3)));
+    if (of_b <= 0 && d2 >= 0 && d6 <= 0) return glm::length(ap - ac * (d2 / (d2 - d6)));
+    if (of_a <= 0 && d4 >= d3 && d5 >= d6) return glm::length(bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))));
+    return glm::length(ap - (ab * of_b + ac * of_c) / (of_a + of_b + of_c));
+}
+
 // The back of a triangle that has a twin is the twin's front: which of the two the ray met first is rounding.
 void turn_to_twin(const TriangleSet::Twin& twin, Hit& hit) {
     const std::array<float, 3> weights = {1 - hit.u - hit.v, hit.u, hit.v};
@@ -230,6 +244,32 @@ void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
         hits.push_back({static_cast<float>(*z_m), crossing.facing < 0 || two_sided, crossing.facing > 0 || two_sided});
     }
     std::stable_sort(hits.begin(), hits.end(), [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });
+}
+
+float Scene::distance_to_surface(const glm::vec3& point, float most_m) const {
+    struct Search {
+        const Scene& scene;
+        glm::dvec3 point;
+    };
+    Search search{*this, point};
+    RTCPointQuery query{point.x, point.y, point.z, 0, most_m};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    const auto look = [](RTCPointQueryFunctionArguments* found) {
+        const auto& [scene, at] = *static_cast<const Search*>(found->userPtr);
+        const bool instanced = found->context->instStackSize > 0;
+        const TriangleSet& set = instanced ? scene.set_of(found->context->instID[0], found->geomID) : *scene.large_sets_[found->geomID - scene.map_->objects.size()];
+        const map::Object& object = scene.map_->objects[scene.object_index(instanced ? found->context->instID[0] : set.instance)];
+        const glm::dmat4x3 world_from_object(object.world_from_object);
+        const glm::uvec3& triangle = set.primitive->triangles[set.triangle_of(found->primID)];
+        const auto corner = [&](std::uint32_t vertex) { return world_from_object * glm::dvec4(set.primitive->positions[vertex], 1); };
+        const auto distance_m = static_cast<float>(distance_to_triangle(at, corner(triangle.x), corner(triangle.y), corner(triangle.z)));
+        if (!(distance_m < found->query->radius)) return false;
+        found->query->radius = distance_m;
+        return true;
+    };
+    rtcPointQuery(handle_, &query, &context, look, &search);
+    return query.radius;
 }
 
 std::vector<map::Bounds> Scene::vegetation_bounds(const Region& region) const {

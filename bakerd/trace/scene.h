@@ -75,6 +75,9 @@ class Scene {
     // All crossings of the vertical line at (x, y) with static objects, from the top down; `hits` is replaced.
     void column(glm::vec2 at, std::vector<ColumnHit>& hits) const;
 
+    // To the nearest surface of any kind, at most `most_m`; what alpha takes away counts as there.
+    [[nodiscard]] float distance_to_surface(const glm::vec3& point, float most_m) const;
+
     // World bounds of vegetation that overlap the region (its bounds), in the map's order.
     [[nodiscard]] std::vector<map::Bounds> vegetation_bounds(const Region& region) const;
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
 #include <random>
 
 namespace drtv::test {
@@ -156,6 +157,78 @@ TEST_P(RandomEdits, HoldWhatIsPromised) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomEdits, testing::Range(1u, 9u));
+
+// Edits one after the other, each baked on top of what was left of the one before, as a farm does it.
+class ChainsOfEdits : public testing::TestWithParam<unsigned> {};
+
+TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
+    const float tolerance = GetParam() % 2 == 0 ? 0 : 1 / 32.0f;
+    const trace::FloatMode float_mode;
+    std::mt19937 random(GetParam());
+    Yard yard(GetParam(), GetParam() % 4 >= 2);
+    bake::Settings settings = settings_of_yard(tolerance == 0 ? 32 : 256, false, GetParam() % 3 == 0 ? 1 : 2);
+    settings.tolerance = tolerance;
+    struct State {
+        bake::BakedSector baked;
+        bake::Inventory inventory;  // of its map
+    };
+    std::map<map::SectorCoordinate, State> states;
+    std::size_t taken_over = 0, baked_again = 0;
+    for (int n = 0; n < 6; ++n) {
+        const std::string what = "seed " + std::to_string(GetParam()) + ", " + std::to_string(n) + ": " + (n == 0 ? "" : edit(yard, random));
+        const auto world = open_world(yard.build());
+        const bake::Inventory inventory = bake::take_inventory(*world);
+        for (std::int32_t j = -1; j <= 1; ++j) {
+            for (std::int32_t i = -1; i <= 1; ++i) {
+                const bake::BakedSector fresh = bake::bake_sector(*world, {i, j}, settings).value();
+                const auto known = states.find({i, j});
+                if (known == states.end()) {
+                    states[{i, j}] = {fresh, inventory};
+                    continue;
+                }
+                State& state = known->second;
+                const auto changes = bake::changes_between(state.inventory, inventory);
+                // As it comes back from the store.
+                bake::EarlierBake earlier{state.baked.sector, bake::decode_footprint(bake::encode_footprint(state.baked.footprint)).value(), {}};
+                earlier.assessment = bake::assess(earlier.footprint, settings, changes, tolerance, *world);
+                if (earlier.assessment.verdict == bake::Verdict::rebake) {
+                    state = {bake::bake_sector(*world, {i, j}, settings, &earlier).value(), inventory};
+                    taken_over += state.baked.probes_taken_over;
+                    baked_again += state.baked.sector.probes.size() - state.baked.probes_taken_over;
+                }
+                if (tolerance == 0) {
+                    EXPECT_EQ(encoded(state.baked.sector), encoded(fresh.sector)) << what << ", sector (" << i << ", " << j << ")";
+                } else {
+                    EXPECT_LE(error_between(state.baked.sector, fresh.sector), tolerance + 0x1p-13f) << what << ", sector (" << i << ", " << j << ")";
+                }
+            }
+        }
+    }
+    EXPECT_GT(taken_over, 0u);
+    EXPECT_GT(baked_again, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ChainsOfEdits, testing::Range(1u, 11u));
+
+// An earlier bake that does not belong to the sector's map is of no use, and does no harm.
+TEST(EarlierBake, OfOtherHeightsOrOfAnotherFileIsNotUsed) {
+    const trace::FloatMode float_mode;
+    const Yard yard(3, false);
+    Yard tower = yard;
+    tower.things.push_back({"tower", "", 1, {100, 60, -100}});
+    const bake::Settings settings = settings_of_yard(32, false);
+    const auto before = open_world(yard.build()), after = open_world(tower.build());
+    const bake::BakedSector was = bake::bake_sector(*before, {0, 0}, settings).value(), is = bake::bake_sector(*after, {0, 0}, settings).value();
+    const auto changes = bake::changes_between(bake::take_inventory(*before), bake::take_inventory(*after));
+    bake::EarlierBake earlier{was.sector, was.footprint, bake::assess(was.footprint, settings, changes, 0, *after)};
+    const bake::BakedSector higher = bake::bake_sector(*after, {0, 0}, settings, &earlier).value();
+    EXPECT_EQ(higher.probes_taken_over, 0u);
+    EXPECT_EQ(encoded(higher.sector), encoded(is.sector));
+    earlier = {is.sector, is.footprint, bake::assess(is.footprint, settings, {}, 0, *after)};
+    EXPECT_EQ(bake::bake_sector(*after, {0, 0}, settings, &earlier).value().probes_taken_over, is.sector.probes.size());
+    earlier.sector.probes.pop_back();
+    EXPECT_EQ(encoded(bake::bake_sector(*after, {0, 0}, settings, &earlier).value().sector), encoded(is.sector));
+}
 
 TEST(Assessment, TheSameMapIsAllHits) {
     const Yard yard(3, true);

@@ -1,0 +1,81 @@
+#include "bakerd/bake/static_gain.h"
+
+#include "bakerd/bake/footprint.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+namespace drtv::bake {
+namespace {
+
+constexpr float reflected = map::max_albedo * std::numbers::inv_pi_v<float>;
+// Nearer to a lamp than this counts as this: far above any tolerance all the same.
+constexpr float least_distance_m = 0.001f;
+
+float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
+
+// Of light of that radiance at each of a path's points.
+float of_path(float radiance, const Settings& settings) {
+    float bounces = 0, left = 1;
+    for (std::uint32_t bounce = 0; bounce < std::max(settings.bounces, 1u); ++bounce, left *= map::max_albedo) bounces += left;
+    return bounces * radiance / static_irradiance_range;
+}
+
+// A lamp, and how near to it a surface can be.
+struct NearLamp {
+    glm::vec3 position;
+    float intensity;  // of its brightest channel, W/sr
+    float distance_m;
+};
+
+float irradiance(const NearLamp& lamp, float distance_m) { return lamp.intensity / (distance_m * distance_m); }
+
+// What all lamps together bring at most to any one surface. A point that has one of them nearest is at least half way from that to each other.
+float most_irradiance(const std::vector<NearLamp>& lamps) {
+    constexpr std::size_t most_in_pairs = 2048;
+    float most = 0, sum = 0;
+    for (const NearLamp& lamp : lamps) sum += irradiance(lamp, lamp.distance_m);
+    if (lamps.size() > most_in_pairs) return sum;
+    for (const NearLamp& nearest : lamps) {
+        float together = irradiance(nearest, nearest.distance_m);
+        for (const NearLamp& lamp : lamps) {
+            if (&lamp != &nearest) together += irradiance(lamp, std::max(lamp.distance_m, glm::distance(lamp.position, nearest.position) / 2));
+        }
+        most = std::max(most, together);
+    }
+    return most;
+}
+
+}  // namespace
+
+float static_gain(const StaticLights& lights, const trace::Scene& scene, std::span<const placement::Position> probes, const Settings& settings) {
+    const auto within_reach = [&](const glm::vec3& place, float radius_m) {
+        return std::ranges::any_of(probes, [&](const placement::Position& probe) { return glm::distance(placement::metres(probe), place) - radius_m <= settings.reach_m; });
+    };
+    std::vector<NearLamp> lamps;
+    for (const PointLight& lamp : lights.points()) {
+        if (within_reach(lamp.position, 0)) lamps.push_back({lamp.position, brightest(lamp.intensity), std::max(scene.distance_to_surface(lamp.position, settings.reach_m), least_distance_m)});
+    }
+    float most = reflected * most_irradiance(lamps), suns = 0;
+    for (const EmissiveObject& emissive : lights.emissive()) {
+        if (within_reach(emissive.centre, emissive.radius_m)) most = std::max(most, emissive.radiance);
+    }
+    for (const Sun& sun : lights.suns()) suns += reflected * brightest(sun.irradiance);
+    return of_path(most + suns, settings);
+}
+
+float static_gain(const StaticLights& lights, std::span<const map::Bounds> boxes, const Settings& settings) {
+    std::vector<NearLamp> lamps;
+    for (const PointLight& lamp : lights.points()) {
+        float distance_m = settings.reach_m;
+        for (const map::Bounds& box : boxes) distance_m = std::min(distance_m, glm::distance(lamp.position, glm::clamp(lamp.position, box.low, box.high)));
+        if (distance_m < settings.reach_m) lamps.push_back({lamp.position, brightest(lamp.intensity), std::max(distance_m, least_distance_m)});
+    }
+    return of_path(reflected * most_irradiance(lamps), settings);
+}
+
+}  // namespace drtv::bake

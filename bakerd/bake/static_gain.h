@@ -1,0 +1,21 @@
+// How much static light one path can bring at most: from each of its bounces, the radiance of a white surface where the lights are brightest. It is what a path's weight
+// is worth, where a change lets the path find something else.
+#pragma once
+
+#include "bakerd/bake/lights.h"
+#include "bakerd/bake/settings.h"
+#include "bakerd/map/map.h"
+#include "bakerd/trace/scene.h"
+#include "placement/placement.h"
+
+#include <span>
+
+namespace drtv::bake {
+
+// Of all lights within reach of the probes, over static_irradiance_range; lamps shine on the surfaces of the scene, the nearest of each counts. 0 without lights.
+[[nodiscard]] float static_gain(const StaticLights& lights, const trace::Scene& scene, std::span<const placement::Position> probes, const Settings& settings);
+
+// The same of surfaces anywhere in the boxes, and of lamps alone.
+[[nodiscard]] float static_gain(const StaticLights& lights, std::span<const map::Bounds> boxes, const Settings& settings);
+
+}  // namespace drtv::bake
