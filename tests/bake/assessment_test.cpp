@@ -58,26 +58,30 @@ bake::Settings settings_of_yard(std::uint32_t rays, bool local, std::uint32_t bo
     return settings;
 }
 
-// The largest difference of a coefficient, as a share of its range; more than any where probes stand elsewhere.
+// The largest difference of a coefficient of one probe, as a share of its range.
+float error_of_probe(const Sector& a, const Sector& b, std::size_t p) {
+    float worst = 0;
+    const auto differ = [&](float x, float y, float range) { worst = std::max(worst, std::abs(x - y) / range); };
+    const auto irradiance = [p](const Sector& sector, std::size_t c, std::size_t k) {
+        return sector.static_irradiance.empty() ? 0.0f : decode_fixed(sector.static_irradiance[p].codes[c][k], scale_of_exponent(sector.static_irradiance[p].exponent));
+    };
+    for (std::size_t k = 0; k < basis_count; ++k) {
+        differ(decode_fixed(a.probes[p].sky_visibility[k], sky_visibility_scale), decode_fixed(b.probes[p].sky_visibility[k], sky_visibility_scale), 1);
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            for (std::size_t i = 0; i < sh_count; ++i) differ(decode_fixed(a.probes[p].transfer[c][k][i], transfer_scale), decode_fixed(b.probes[p].transfer[c][k][i], transfer_scale), i == 0 ? 0.2821f : 0.9772f);
+            differ(irradiance(a, c, k), irradiance(b, c, k), bake::static_irradiance_range);
+        }
+    }
+    return worst;
+}
+
+// Of all probes; more than any where they stand elsewhere.
 float error_between(const Sector& a, const Sector& b) {
     if (a.probes.size() != b.probes.size() || a.grid != b.grid) return 9;
     float worst = 0;
-    const auto differ = [&](float x, float y, float range) { worst = std::max(worst, std::abs(x - y) / range); };
     for (std::size_t p = 0; p < a.probes.size(); ++p) {
         if (a.probes[p].position != b.probes[p].position) return 9;
-        for (std::size_t k = 0; k < basis_count; ++k) {
-            differ(decode_fixed(a.probes[p].sky_visibility[k], sky_visibility_scale), decode_fixed(b.probes[p].sky_visibility[k], sky_visibility_scale), 1);
-            for (std::size_t c = 0; c < channel_count; ++c) {
-                for (std::size_t i = 0; i < sh_count; ++i) differ(decode_fixed(a.probes[p].transfer[c][k][i], transfer_scale), decode_fixed(b.probes[p].transfer[c][k][i], transfer_scale), i == 0 ? 0.2821f : 0.9772f);
-            }
-        }
-        if (a.static_irradiance.empty() && b.static_irradiance.empty()) continue;
-        const auto irradiance = [p](const Sector& sector, std::size_t c, std::size_t k) {
-            return sector.static_irradiance.empty() ? 0.0f : decode_fixed(sector.static_irradiance[p].codes[c][k], scale_of_exponent(sector.static_irradiance[p].exponent));
-        };
-        for (std::size_t c = 0; c < channel_count; ++c) {
-            for (std::size_t k = 0; k < basis_count; ++k) differ(irradiance(a, c, k), irradiance(b, c, k), bake::static_irradiance_range);
-        }
+        worst = std::max(worst, error_of_probe(a, b, p));
     }
     return worst;
 }
@@ -173,7 +177,7 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
         bake::Inventory inventory;  // of its map
     };
     std::map<map::SectorCoordinate, State> states;
-    std::size_t taken_over = 0, baked_again = 0;
+    std::size_t taken_over = 0, baked_again = 0, off = 0;
     for (int n = 0; n < 6; ++n) {
         const std::string what = "seed " + std::to_string(GetParam()) + ", " + std::to_string(n) + ": " + (n == 0 ? "" : edit(yard, random));
         const auto world = open_world(yard.build());
@@ -195,6 +199,12 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
                     state = {bake::bake_sector(*world, {i, j}, settings, &earlier).value(), inventory};
                     taken_over += state.baked.probes_taken_over;
                     baked_again += state.baked.sector.probes.size() - state.baked.probes_taken_over;
+                    ASSERT_LE(error_between(state.baked.sector, fresh.sector), 1) << what;
+                    for (std::size_t p = 0; p < fresh.sector.probes.size(); ++p) {
+                        const float bound = state.baked.footprint.probes[p].bound;
+                        off += bound > 0 ? 1 : 0;
+                        EXPECT_LE(error_of_probe(state.baked.sector, fresh.sector, p), bound + (bound > 0 ? 0x1p-13f : 0)) << what << ", probe " << p;
+                    }
                 }
                 if (tolerance == 0) {
                     EXPECT_EQ(encoded(state.baked.sector), encoded(fresh.sector)) << what << ", sector (" << i << ", " << j << ")";
@@ -206,9 +216,28 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
     }
     EXPECT_GT(taken_over, 0u);
     EXPECT_GT(baked_again, 0u);
+    EXPECT_EQ(off > 0, tolerance > 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ChainsOfEdits, testing::Range(1u, 11u));
+
+// What placement asked once is not asked again: a ray of a solid test that may end otherwise by now is one less that has to change.
+TEST(EarlierBake, RaysOfSolidTestsAreUsedUp) {
+    const trace::FloatMode float_mode;
+    const Yard yard(3, false);
+    const bake::Settings settings = settings_of_yard(32, false);
+    const auto world = open_world(yard.build());
+    const bake::BakedSector was = bake::bake_sector(*world, {0, 0}, settings).value();
+    bake::EarlierBake earlier{was.sector, was.footprint, bake::assess(was.footprint, settings, {}, 0, *world)};
+    ASSERT_EQ(earlier.assessment.flips.size(), was.footprint.solid_tests.size());
+    const auto test = static_cast<std::size_t>(std::ranges::max_element(was.footprint.solid_tests, {}, &bake::SolidTest::to_flip) - was.footprint.solid_tests.begin());
+    const bake::SolidTest before = was.footprint.solid_tests[test];
+    ASSERT_GE(before.to_flip, 2);
+    earlier.assessment.flips[test] = 1;
+    const auto tests = bake::bake_sector(*world, {0, 0}, settings, &earlier).value().footprint.solid_tests;
+    EXPECT_EQ(std::ranges::count(tests, bake::SolidTest{before.position, static_cast<std::uint8_t>(before.to_flip - 1)}), 1);
+    EXPECT_EQ(std::ranges::count(tests, before), 0);
+}
 
 // An earlier bake that does not belong to the sector's map is of no use, and does no harm.
 TEST(EarlierBake, OfOtherHeightsOrOfAnotherFileIsNotUsed) {
