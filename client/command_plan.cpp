@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace drtv::client {
@@ -32,6 +33,7 @@ void print_json(const v1::Plan& plan, double largest_bound) {
         Json json = {{"sector", {sector.i(), sector.j()}}, {"verdict", name_of(sector.verdict())}};
         if (sector.bound() > 0) json["bound"] = sector.bound();
         if (!sector.reason().empty()) json["reason"] = sector.reason();
+        if (sector.verdict() == v1::PlannedSector::REBAKE) json["share"] = sector.share();
         sectors.push_back(std::move(json));
     }
     for (const v1::MapChange& change : plan.changes()) changes.push_back({{"what", change.what()}, {"low", {change.x0(), change.y0(), change.z0()}}, {"high", {change.x1(), change.y1(), change.z1()}}});
@@ -51,7 +53,8 @@ void print_text(const v1::Plan& plan, double largest_bound) {
     for (const v1::PlannedSector& sector : plan.sectors()) {
         if (sector.verdict() != v1::PlannedSector::REBAKE) continue;
         if (++told > most_reasons) break;
-        std::printf("  (%d, %d) %s\n", sector.i(), sector.j(), sector.reason().c_str());
+        const std::string share = sector.share() < 1 ? fmt::format("; {:.0f} % of its probes", std::ceil(sector.share() * 100)) : "";
+        std::printf("  (%d, %d) %s%s\n", sector.i(), sector.j(), sector.reason().c_str(), share.c_str());
     }
     if (rebakes > most_reasons) std::printf("  and %s more; --json lists all\n", with_thousands(rebakes - most_reasons).c_str());
 }

@@ -63,7 +63,7 @@ struct JobRow {
     JobState state = JobState::running;
     std::string error;
     std::int64_t sectors_cached = 0, sectors_near = 0;  // hits and near hits
-    float largest_bound = 0;                             // of the near hits
+    float largest_bound = 0;                             // of the near hits, and of probes that others took over
     std::int64_t created_seconds = 0, ended_seconds = 0;  // Unix time
 };
 

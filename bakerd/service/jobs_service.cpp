@@ -101,6 +101,7 @@ grpc::Status JobsService::PlanJob(grpc::ServerContext*, const v1::PlanJobRequest
         sector.set_verdict(to_proto(planned.verdict));
         sector.set_bound(static_cast<double>(planned.bound));
         sector.set_reason(planned.reason);
+        if (planned.verdict == bake::Verdict::rebake) sector.set_share(static_cast<double>(planned.share));
     }
     for (const auto& [what, bounds] : view->plan.changes) {
         v1::MapChange& change = *response->add_changes();

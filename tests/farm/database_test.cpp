@@ -194,7 +194,7 @@ TEST_F(DatabaseTest, AKeyNamesOneTask) {
 class ResultsTest : public DatabaseTest {
   protected:
     ResultRow add_result(map::SectorCoordinate sector, const std::string& file) {
-        ResultRow row{0, sector, digest_of("settings"), {digest_of(file), 100, 10, 1000, {"one", "two"}, digest_of(file + " footprint"), digest_of("inventory"), 20, 1.5}};
+        ResultRow row{0, sector, digest_of("settings"), {digest_of(file), 100, 10, 1000, {"one", "two"}, digest_of(file + " footprint"), digest_of("inventory"), 20, 1.5, 0.25f}};
         EXPECT_TRUE(database->insert_result(row));
         return row;
     }
@@ -280,6 +280,22 @@ TEST_F(DatabaseTest, ANewerSchemaIsRefusedAndLeftAlone) {
         EXPECT_EQ(opened.error().code, ErrorCode::failed_precondition);
         EXPECT_NE(opened.error().message.find("999"), std::string::npos) << opened.error().message;
     }
+}
+
+// Records of results were of another kind before the fourth schema: those of the third are no candidates any more.
+TEST_F(ResultsTest, OfTheThirdSchemaAreGivenUp) {
+    add_result({1, 2}, "old");
+    database.reset();
+    sqlite3* handle = nullptr;
+    ASSERT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(handle, "ALTER TABLE result DROP COLUMN bound; PRAGMA user_version=3", nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(handle);
+    sqlite3_close(handle);
+    reopen();
+    EXPECT_TRUE(database->results({1, 2}, digest_of("settings"), 8)->empty());
+    add_result({1, 2}, "new");
+    const auto rows = database->results({1, 2}, digest_of("settings"), 8).value();
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(std::tuple(rows[0].result.result, rows[0].result.seconds, rows[0].result.bound), std::tuple(digest_of("new"), 1.5, 0.25f));
 }
 
 // A file as the first schema left it: no warnings, and settings of four values.
