@@ -53,7 +53,7 @@ void print_text(const v1::Plan& plan, double largest_bound) {
     for (const v1::PlannedSector& sector : plan.sectors()) {
         if (sector.verdict() != v1::PlannedSector::REBAKE) continue;
         if (++told > most_reasons) break;
-        const std::string share = sector.share() < 1 ? fmt::format("; {:.0f} % of its probes", std::ceil(sector.share() * 100)) : "";
+        const std::string share = sector.share() >= 1 ? "" : sector.share() > 0 ? fmt::format("; {:.0f} % of its probes", std::ceil(sector.share() * 100)) : "; those that move";
         std::printf("  (%d, %d) %s%s\n", sector.i(), sector.j(), sector.reason().c_str(), share.c_str());
     }
     if (rebakes > most_reasons) std::printf("  and %s more; --json lists all\n", with_thousands(rebakes - most_reasons).c_str());

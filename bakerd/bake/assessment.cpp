@@ -13,6 +13,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -182,10 +183,15 @@ class Assessor {
         : footprint_(footprint), settings_(settings), tolerance_(footprint.without_bounds ? 0 : tolerance), world_(world), counted_(footprint.grid.block_count(), false), flips_(footprint.solid_tests.size(), 0) {
         const float x = static_cast<float>(footprint.sector.i) * sector_m, y = static_cast<float>(footprint.sector.j) * sector_m, infinity = std::numeric_limits<float>::infinity();
         square_ = {{x, y, -infinity}, {x + sector_m, y + sector_m, infinity}};
-        for (const ProbeRecord& probe : footprint.probes) assessment_.probe_bounds.push_back(probe.bound);
     }
 
     Assessment run(std::span<const Change> changes) {
+        // One for all: a path that one change lets through may find what another has put beside a lamp.
+        std::vector<Bounds> boxes;
+        for (const Change& change : changes) std::ranges::copy(boxes_of(change), std::back_inserter(boxes));
+        std::erase_if(boxes, [&](const Bounds& box) { return !within_reach({&box, 1}); });
+        assessment_.gain = std::max(1.0f, footprint_.static_gain + static_gain(world_.lights(), boxes, settings_));
+        for (const ProbeRecord& probe : footprint_.probes) assessment_.probe_bounds.push_back(probe.share * assessment_.gain);
         for (std::size_t n = 0; n < changes.size() && !settled(); ++n) {
             const auto [weight, cause] = weigh(changes[n]);
             if (!(weight > 0) || (assessment_.change && weight <= assessment_.weight)) continue;
@@ -197,8 +203,10 @@ class Assessor {
         if (!assessment_.placement_holds) assessment_.bound = unbounded;
         assessment_.verdict = assessment_.bound > tolerance_ ? Verdict::rebake : assessment_.bound > 0 ? Verdict::near_hit : Verdict::hit;
         for (const std::uint32_t flips : flips_) assessment_.flips.push_back(static_cast<std::uint8_t>(std::popcount(flips)));
-        // Local transfer is of all probes together, and a number of rays that follows from what they find is in no record.
-        if (footprint_.without_bounds) assessment_.probe_bounds.clear();
+        // Local transfer is of all probes together, and a number of rays that follows from what they find is in no record. Of a scene with other heights the
+        // record cannot go on.
+        const bool alone = footprint_.without_bounds || (assessment_.verdict == Verdict::rebake && !settled() && footprint_grid(footprint_.sector, scene_distance_m(settings_), scene().bounds().low.z, scene().bounds().high.z) != footprint_.grid);
+        if (alone) assessment_.probe_bounds.clear();
         return std::move(assessment_);
     }
 
@@ -223,21 +231,30 @@ class Assessor {
             assessment_.placement_holds = false;
             count(cause, unbounded);
         };
-        std::vector<Bounds> boxes;
         for (const std::optional<Item>* item : {&change.before, &change.after}) {
             if (!*item) continue;
             if (const std::optional<Cause> cause = moves_probes(**item)) placement_fails(*cause);
             if (shine_on_probes(**item)) count(Cause::light, unbounded);
-            if ((*item)->kind == ItemKind::fixed || (*item)->kind == ItemKind::vegetation) boxes.push_back(grown((*item)->bounds, glm::vec3(slack_m((*item)->bounds, footprint_.reach_m))));
         }
+        const std::vector<Bounds> boxes = boxes_of(change);
         if (assessment_.placement_holds && flips_placement(boxes)) placement_fails(Cause::placement);
         if (within_reach(boxes)) count(Cause::rays, count_rays(boxes));
         return weighed;
     }
 
+    // Where geometry was and is.
+    [[nodiscard]] std::vector<Bounds> boxes_of(const Change& change) const {
+        std::vector<Bounds> boxes;
+        for (const std::optional<Item>* item : {&change.before, &change.after}) {
+            if (!*item || ((*item)->kind != ItemKind::fixed && (*item)->kind != ItemKind::vegetation)) continue;
+            boxes.push_back(grown((*item)->bounds, glm::vec3(slack_m((*item)->bounds, footprint_.reach_m))));
+        }
+        return boxes;
+    }
+
     // Gives the most that the boxes change of any probe.
     float count_rays(std::span<const Bounds> boxes) {
-        const float gain = std::max({1.0f, footprint_.static_gain, static_gain(world_.lights(), boxes, settings_)});
+        const float gain = assessment_.gain;
         const std::array<float, quarter_count> later = later_shares(boxes);
         float most = 0;
         for (std::size_t p = 0; p < footprint_.probes.size(); ++p) {
@@ -283,7 +300,8 @@ class Assessor {
         const bool emissive = item.emissive && (item.kind == ItemKind::fixed || item.kind == ItemKind::vegetation), everywhere = item.kind == ItemKind::sun;
         if (!emissive && !everywhere && item.kind != ItemKind::lamp) return false;
         const glm::vec3 centre = (item.bounds.low + item.bounds.high) * 0.5f;
-        const float radius_m = glm::length(item.bounds.high - item.bounds.low) * 0.5f, reach_m = footprint_.reach_m + radius_m + 2 * slack_m(item.bounds, footprint_.reach_m);
+        // The emissive part, which is what counts, may lie at one end and be as large as the whole.
+        const float diagonal_m = glm::length(item.bounds.high - item.bounds.low), reach_m = footprint_.reach_m + diagonal_m + 2 * slack_m(item.bounds, footprint_.reach_m);
         bool any = false;
         for (std::size_t p = 0; p < footprint_.probes.size(); ++p) {
             if (!everywhere && glm::distance(placement::metres(footprint_.probes[p].position), centre) > reach_m) continue;
@@ -343,12 +361,16 @@ class Assessor {
         return shares;
     }
 
+    const trace::Scene& scene() {
+        if (!scene_) scene_ = world_.scene_for(footprint_.sector, scene_distance_m(settings_));
+        return *scene_;
+    }
+
     // Made when first needed: most results are asked about things far away.
     const FirstRays& first_rays() {
         if (!first_rays_) {
-            scene_ = world_.scene_for(footprint_.sector, scene_distance_m(settings_));
             samples_ = world_.samples(settings_.rays, sample_dimensions(settings_.bounces, !world_.lights().empty()));
-            first_rays_.emplace(footprint_, *samples_, *scene_);
+            first_rays_.emplace(footprint_, *samples_, scene());
         }
         return *first_rays_;
     }

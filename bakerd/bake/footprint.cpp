@@ -23,7 +23,7 @@ constexpr int least_weight_exponent = -14;
 
 constexpr std::uint64_t magic = 0x32'50'46'56'54'52'44;  // "DRTVFP2"
 constexpr std::uint32_t most_rays = 1u << 16;
-constexpr std::int32_t most_place = 1 << 24;
+constexpr std::int32_t most_place = 1 << 18;
 
 template <class Number>
 std::uint32_t as_bits(const Number& number) {
@@ -71,7 +71,7 @@ void for_each_column(const std::vector<ProbeRecord>*, Visit visit) {
     visit([](auto& probe) -> auto& { return probe.shadow_rays; }, true);
     visit([](auto& probe) -> auto& { return probe.back_hits; }, false);
     visit([](auto& probe) -> auto& { return probe.error; }, false);
-    visit([](auto& probe) -> auto& { return probe.bound; }, false);
+    visit([](auto& probe) -> auto& { return probe.share; }, false);
 }
 
 template <class Visit>
@@ -79,6 +79,8 @@ void for_each_column(const std::vector<SolidTest>*, Visit visit) {
     for (glm::length_t axis = 0; axis < 3; ++axis) visit([axis](auto& test) -> auto& { return test.position[axis]; }, true);
     visit([](auto& test) -> auto& { return test.to_flip; }, false);
 }
+
+static_assert(sizeof(ProbeRecord) == 8 * sizeof(std::uint32_t) && sizeof(SolidTest) == 4 * sizeof(std::uint32_t), "each member is stored as 32 bits");
 
 template <class Record>
 void add_records(StoredWriter& writer, const std::vector<Record>& records) {
@@ -93,7 +95,7 @@ void add_records(StoredWriter& writer, const std::vector<Record>& records) {
 template <class Record>
 std::vector<Record> read_records(StoredReader& reader) {
     const auto count = reader.read<std::uint32_t>();
-    if (count > reader.left()) {
+    if (count > reader.left() / sizeof(Record)) {
         reader.refuse();
         return {};
     }
@@ -123,7 +125,7 @@ std::vector<std::uint8_t> from_pairs(const std::vector<std::uint8_t>& pairs) {
 
 bool is_sound(const FootprintGrid& grid) {
     const auto within = [](std::int32_t value, std::int32_t least, std::int32_t most) { return value >= least && value <= most; };
-    return within(grid.cell_m, 1, 1 << 20) && within(grid.layer_m, 1, 1 << 20) && within(grid.columns, 1, 1024) && within(grid.rows, 1, 1024) && within(grid.layers, 1, 64) && within(grid.x, -most_place, most_place) &&
+    return within(grid.cell_m, 1, 1 << 12) && within(grid.layer_m, 1, 1 << 12) && within(grid.columns, 1, 1024) && within(grid.rows, 1, 1024) && within(grid.layers, 1, 64) && within(grid.x, -most_place, most_place) &&
            within(grid.y, -most_place, most_place) && within(grid.z, -most_place, most_place);
 }
 
@@ -235,6 +237,9 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     const std::vector<std::uint8_t> weights = from_pairs(reader.read_all<std::uint8_t>());
     footprint.solid_tests = read_records<SolidTest>(reader);
     if (!reader.complete() || footprint.rays == 0 || footprint.rays > most_rays || footprint.probes.size() > max_probes) return std::nullopt;
+    const auto sensible = [](float value) { return value >= 0 && std::isfinite(value); };
+    if (!sensible(footprint.reach_m) || !sensible(footprint.static_gain) || !sensible(footprint.placement_m) || !sensible(footprint.min_distance_m)) return std::nullopt;
+    if (!std::ranges::all_of(footprint.probes, [&](const ProbeRecord& probe) { return sensible(probe.share); })) return std::nullopt;
     const std::vector<std::size_t> blocks = crossed_blocks(footprint);
     if (weights.size() != blocks.size() * quarter_count) return std::nullopt;
     footprint.weights.resize(footprint.grid.block_count() * quarter_count);

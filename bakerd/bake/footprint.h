@@ -71,7 +71,9 @@ struct ProbeRecord {
     // Its share of the file's statistics.
     std::uint32_t rays = 0, shadow_rays = 0, back_hits = 0;
     float error = 0;
-    float bound = 0;  // on how far its coefficients are off; above 0 of one that was taken over from another map with a tolerance
+    // Of its paths' weight, what may have changed since it was baked; above 0 of one that was taken over from another map within a tolerance. Times the gain it
+    // bounds how far its coefficients are off.
+    float share = 0;
 
     bool operator==(const ProbeRecord&) const = default;
 };
@@ -82,7 +84,7 @@ struct Footprint {
     std::uint32_t rays = 0;  // from each probe
     // Nothing is known of how much a change would matter: local transfer, or a number of rays that follows from what they find.
     bool without_bounds = false;
-    // The most that a path can bring from static lights, over static_irradiance_range (lights.h); 0 where there are none.
+    // The most that a path can bring from static lights, over static_irradiance_range (static_gain.h); 0 where there are none. Of all maps whose probes are here.
     float static_gain = 0;
     float placement_m = 0;     // how far around the sector placement looked down its columns
     float min_distance_m = 0;  // between probes
@@ -96,6 +98,14 @@ struct Footprint {
 
     bool operator==(const Footprint&) const = default;
 
+    // What a path's weight counts: the sky's radiance is 1.
+    [[nodiscard]] float gain() const { return static_gain < 1 ? 1 : static_gain; }
+    // On how far any coefficient is off.
+    [[nodiscard]] float bound() const {
+        float share = 0;
+        for (const ProbeRecord& probe : probes) share = share < probe.share ? probe.share : share;
+        return share * gain();
+    }
     [[nodiscard]] std::uint8_t weight(std::size_t block, std::size_t quarter) const { return weights[block * quarter_count + quarter]; }
 };
 

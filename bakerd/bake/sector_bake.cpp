@@ -91,7 +91,7 @@ std::vector<std::optional<BakedProbe>> taken_over(const EarlierBake* earlier, st
         probe.sky_visibility = earlier->sector.probes[q].sky_visibility;
         if (!earlier->sector.static_irradiance.empty()) probe.static_irradiance = earlier->sector.static_irradiance[q];
         probe.record = earlier->footprint.probes[q];
-        probe.record.bound = earlier->assessment.probe_bounds[q];
+        probe.record.share = earlier->assessment.probe_bounds[q] / earlier->assessment.gain;
         probe.paths = settings.rays;
     }
     return probes;
@@ -158,7 +158,7 @@ void warn_of_backs(const map::Map& map, const Sector& sector, const std::vector<
     for (const BakedProbe& light : lights) {
         for (const auto& [object, hits] : light.back_hit_objects) by_object[object] += hits;
     }
-    if (by_object.empty()) return;  // all of them taken over, with hardly fewer
+    if (by_object.empty()) return;  // of probes that were taken over the objects are not known
     const auto most = std::ranges::max_element(by_object, {}, [](const auto& entry) { return entry.second; });
     const std::string& name = map.objects[most->first].name;
     warnings.push_back(fmt::format("sector ({}, {}): {:.0f} % of its rays meet surfaces from behind, most of them those of '{}': are its faces turned, or is a side of it missing?", sector.i, sector.j,
@@ -274,6 +274,7 @@ tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoor
     footprint.rays = settings.rays;
     footprint.without_bounds = settings.local_transfer || settings.error > 0;
     footprint.static_gain = static_gain(world.lights(), *scene, positions, settings);
+    if (std::ranges::any_of(lights, [](const BakedProbe& light) { return light.record.share > 0; })) footprint.static_gain = std::max(footprint.static_gain, earlier->assessment.gain);
     footprint.placement_m = placement_margin_m(settings);
     footprint.min_distance_m = settings.min_distance_m;
     for (const BakedProbe& light : lights) footprint.probes.push_back(light.record);

@@ -33,7 +33,7 @@ struct EarlierBake {
 
 // Runs on the calling thread's TBB arena. Fails with a sentence (too many manual probes; too high a sector).
 //
-// Probes of an earlier bake that stand where they stood, and whose bound is within settings.tolerance, are taken over; with bounds of 0 the result is
+// Probes of an earlier bake that stand where they stood, and whose bound is within settings.tolerance, are taken over (REQUIRES: it was assessed with that tolerance); with bounds of 0 the result is
 // the same, byte for byte, as without it.
 [[nodiscard]] tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoordinate coordinate, const Settings& settings, const EarlierBake* earlier = nullptr);
 

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -18,11 +19,11 @@ constexpr float least_distance_m = 0.001f;
 
 float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
 
-// Of light of that radiance at each of a path's points.
-float of_path(float radiance, const Settings& settings) {
-    float bounces = 0, left = 1;
-    for (std::uint32_t bounce = 0; bounce < std::max(settings.bounces, 1u); ++bounce, left *= map::max_albedo) bounces += left;
-    return bounces * radiance / static_irradiance_range;
+// Of light of that radiance at each of so many points of a path.
+float of_path(float radiance, std::uint32_t points) {
+    float sum = 0, left = 1;
+    for (std::uint32_t point = 0; point < points; ++point, left *= map::max_albedo) sum += left;
+    return sum * radiance / static_irradiance_range;
 }
 
 // A lamp, and how near to it a surface can be.
@@ -60,22 +61,28 @@ float static_gain(const StaticLights& lights, const trace::Scene& scene, std::sp
     for (const PointLight& lamp : lights.points()) {
         if (within_reach(lamp.position, 0)) lamps.push_back({lamp.position, brightest(lamp.intensity), std::max(scene.distance_to_surface(lamp.position, settings.reach_m), least_distance_m)});
     }
-    float most = reflected * most_irradiance(lamps), suns = 0;
+    float reflected_light = most_irradiance(lamps) * reflected, emitted = 0;
+    for (const Sun& sun : lights.suns()) reflected_light += reflected * brightest(sun.irradiance);
     for (const EmissiveObject& emissive : lights.emissive()) {
-        if (within_reach(emissive.centre, emissive.radius_m)) most = std::max(most, emissive.radiance);
+        if (within_reach(emissive.centre, emissive.radius_m)) emitted = std::max(emitted, emissive.radiance);
     }
-    for (const Sun& sun : lights.suns()) suns += reflected * brightest(sun.irradiance);
-    return of_path(most + suns, settings);
+    // Emission is met at the end of the last ray too.
+    return of_path(reflected_light, settings.bounces) + of_path(emitted, settings.bounces + 1);
 }
 
+// Any point of a box is at least as far from each lamp as the box.
 float static_gain(const StaticLights& lights, std::span<const map::Bounds> boxes, const Settings& settings) {
-    std::vector<NearLamp> lamps;
-    for (const PointLight& lamp : lights.points()) {
-        float distance_m = settings.reach_m;
-        for (const map::Bounds& box : boxes) distance_m = std::min(distance_m, glm::distance(lamp.position, glm::clamp(lamp.position, box.low, box.high)));
-        if (distance_m < settings.reach_m) lamps.push_back({lamp.position, brightest(lamp.intensity), std::max(distance_m, least_distance_m)});
+    float most = 0;
+    for (const map::Bounds& box : boxes) {
+        float irradiance = 0;
+        for (const PointLight& lamp : lights.points()) {
+            const float distance_m = std::max(glm::distance(lamp.position, glm::clamp(lamp.position, box.low, box.high)), least_distance_m);
+            // Beyond, none that a probe knows of shines on what it can see.
+            if (distance_m <= 2 * settings.reach_m) irradiance += brightest(lamp.intensity) / (distance_m * distance_m);
+        }
+        most = std::max(most, irradiance);
     }
-    return of_path(reflected * most_irradiance(lamps), settings);
+    return of_path(reflected * most, settings.bounces);
 }
 
 }  // namespace drtv::bake

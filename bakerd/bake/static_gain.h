@@ -1,5 +1,5 @@
 // How much static light one path can bring at most: from each of its bounces, the radiance of a white surface where the lights are brightest. It is what a path's weight
-// is worth, where a change lets the path find something else.
+// is worth, where a change lets the path find something else. Taken for granted: that a light which is drawn brings no more than all of them together would.
 #pragma once
 
 #include "bakerd/bake/lights.h"

@@ -44,8 +44,8 @@ constexpr const char* schema_2_from_1 = "ALTER TABLE task ADD COLUMN warnings TE
 constexpr const char* schema_3_from_2 =
     "ALTER TABLE task ADD COLUMN bound REAL NOT NULL DEFAULT 0; ALTER TABLE job ADD COLUMN sectors_near INTEGER NOT NULL DEFAULT 0; ALTER TABLE job ADD COLUMN largest_bound REAL NOT NULL DEFAULT 0;";
 
-// Records of results are of another kind since: none of before can be assessed.
-constexpr const char* schema_4_from_3 = "DELETE FROM result; ALTER TABLE result ADD COLUMN bound REAL NOT NULL DEFAULT 0;";
+// Records of results are of another kind since: none of before can be assessed. They are found no more, and leave the cache in their time.
+constexpr const char* schema_4_from_3 = "UPDATE result SET settings_key = ''; ALTER TABLE result ADD COLUMN bound REAL NOT NULL DEFAULT 0;";
 
 constexpr const char* task_columns = "id, key, manifest, i, j, settings, state, failed_attempts, result, size, probes, rays, error, warnings, bound";
 constexpr const char* job_columns = "id, request_id, manifest, preset, settings, overrides, region, state, error, sectors_cached, created, ended, sectors_near, largest_bound";
@@ -260,8 +260,8 @@ Result<void> Database::insert_job(JobRow& job) {
 }
 
 Result<void> Database::update_job(const JobRow& job) {
-    Statement statement(*this, "UPDATE job SET state = ?, error = ?, ended = ? WHERE id = ?");
-    return statement.bind(static_cast<std::int64_t>(job.state)).bind(job.error).bind(job.ended_seconds).bind(job.id).run();
+    Statement statement(*this, "UPDATE job SET state = ?, error = ?, ended = ?, largest_bound = ? WHERE id = ?");
+    return statement.bind(static_cast<std::int64_t>(job.state)).bind(job.error).bind(job.ended_seconds).bind_real(job.largest_bound).bind(job.id).run();
 }
 
 Result<std::vector<JobRow>> Database::jobs() {

@@ -77,6 +77,7 @@ void Farm::adopt(Job& job, std::vector<TaskRow> tasks, const std::vector<map::Se
             job.counts.probes += row.result.probes;
         }
         if (row.state == TaskState::failed) ++job.counts.failed;
+        job.row.largest_bound = std::max(job.row.largest_bound, row.bound);
         const auto [entry, added] = tasks_.try_emplace(id);
         Task& task = entry->second;
         if (!added && task.row.state != TaskState::pending && row.state == TaskState::pending) reopen(task);
@@ -216,7 +217,10 @@ Result<JobView> Farm::create_job(const JobRequest& request) {
     std::vector<std::int64_t> ids;
     for (const TaskRow& task : *tasks) ids.push_back(task.id);
     adopt(kept, std::move(*tasks), order);
-    for (std::size_t n = 0; n < ids.size(); ++n) tasks_.at(ids[n]).earlier = planned->plan.sectors[n].earlier;
+    for (std::size_t n = 0; n < ids.size(); ++n) {
+        Task& task = tasks_.at(ids[n]);
+        if (!task.running && !task.earlier) task.earlier = planned->plan.sectors[n].earlier;
+    }
     spdlog::info("job {}: {} sectors, {} of them in the cache, {} nearly so", id, kept.counts.total, kept.row.sectors_cached, kept.row.sectors_near);
     end_job_if_complete(kept);
     auto view = view_of(kept);

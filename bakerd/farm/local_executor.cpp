@@ -112,6 +112,8 @@ void LocalExecutor::handle_death(const std::string& how) {
 
 void LocalExecutor::retry_or_fail(Request request, const std::string& sentence) {
     if (++request.failed_attempts < max_attempts) {
+        // Should an earlier result be what the worker cannot bear: without it then.
+        if (auto* bake = std::get_if<BakeRequest>(&request.what)) bake->earlier.reset();
         again_.push_back(std::move(request));
         return;
     }

@@ -101,7 +101,8 @@ void apply(const AssessAnswer& answer, Plan& plan) {
         } else if (assessed.share < 1) {
             planned.earlier = candidate;
             planned.share = assessed.share;
-            planned.seconds = candidate.seconds * static_cast<double>(assessed.share);
+            // Where probes are placed again some may come to stand elsewhere.
+            planned.seconds = candidate.seconds * std::max(static_cast<double>(assessed.share), 0.02);
         }
     }
     plan.changes = answer.changes;

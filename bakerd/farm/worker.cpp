@@ -87,10 +87,8 @@ class Worker {
         const auto footprint_digest = store_->put(footprint), digest = footprint_digest ? store_->put(*bytes) : footprint_digest;
         if (!digest) return FailureAnswer{digest.error().message, true};
         const Sector& sector = baked->sector;
-        float bound = 0;
-        for (const bake::ProbeRecord& probe : baked->footprint.probes) bound = std::max(bound, probe.bound);
         return BakeAnswer{*digest, static_cast<std::int64_t>(bytes->size()), static_cast<std::int64_t>(sector.probes.size()), static_cast<std::int64_t>(sector.statistics.rays), baked->warnings,
-                          *footprint_digest, loaded->summary.inventory, static_cast<std::int64_t>(footprint.size()), seconds, bound};
+                          *footprint_digest, loaded->summary.inventory, static_cast<std::int64_t>(footprint.size()), seconds, baked->footprint.bound()};
     }
 
     What perform(const AssessRequest& request) {

@@ -73,7 +73,7 @@ struct BakeAnswer {
 struct AssessAnswer {
     struct Sector {
         bake::Verdict verdict = bake::Verdict::rebake;
-        std::size_t candidate = 0;  // of a rebake the one with the most to take over
+        std::size_t candidate = 0;  // of a rebake the one with the most to take over, when its share is below 1
         float bound = 0;
         float share = 1;            // of its probes, that a rebake has to bake
         std::string reason;         // one sentence; empty of a hit

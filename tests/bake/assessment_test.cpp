@@ -201,7 +201,7 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
                     baked_again += state.baked.sector.probes.size() - state.baked.probes_taken_over;
                     ASSERT_LE(error_between(state.baked.sector, fresh.sector), 1) << what;
                     for (std::size_t p = 0; p < fresh.sector.probes.size(); ++p) {
-                        const float bound = state.baked.footprint.probes[p].bound;
+                        const float bound = state.baked.footprint.probes[p].share * state.baked.footprint.gain();
                         off += bound > 0 ? 1 : 0;
                         EXPECT_LE(error_of_probe(state.baked.sector, fresh.sector, p), bound + (bound > 0 ? 0x1p-13f : 0)) << what << ", probe " << p;
                     }

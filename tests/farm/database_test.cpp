@@ -294,6 +294,9 @@ TEST_F(ResultsTest, OfTheThirdSchemaAreGivenUp) {
     EXPECT_TRUE(database->results({1, 2}, digest_of("settings"), 8)->empty());
     add_result({1, 2}, "new");
     const auto rows = database->results({1, 2}, digest_of("settings"), 8).value();
+    // But they are counted, and leave in their turn.
+    EXPECT_EQ(database->cache_counts()->results, 2);
+    ASSERT_EQ(database->idle_results(8)->size(), 2u);
     ASSERT_EQ(rows.size(), 1u);
     EXPECT_EQ(std::tuple(rows[0].result.result, rows[0].result.seconds, rows[0].result.bound), std::tuple(digest_of("new"), 1.5, 0.25f));
 }
