@@ -327,6 +327,37 @@ TEST(Assessment, LampsAndProbesOfTheNextSectorCount) {
     EXPECT_GE(check(yard, probe, settings_of_yard(64, false), 1 / 32.0f, "probe").rebakes, 2);
 }
 
+// The light of a long thing that shines at one end alone stands far from its middle.
+TEST(Assessment, AnEmissiveEndCounts) {
+    const auto beam = [](double shift) {
+        GltfBuilder b;
+        b.add_node({.mesh = b.add_mesh(ground(150), b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}))});
+        const int grey = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}), glowing = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}});
+        b.json["materials"][static_cast<std::size_t>(glowing)]["emissiveFactor"] = {1, 1, 1};
+        const int mesh = b.add_mesh(box({120, 3, -1}, {140, 4, 0}), grey), end = b.add_mesh(quad({119.9f, 3, -1}, {119.9f, 3, 0}, {119.9f, 4, 0}, {119.9f, 4, -1}), glowing);
+        auto& meshes = b.json["meshes"];
+        meshes[static_cast<std::size_t>(mesh)]["primitives"].push_back(meshes[static_cast<std::size_t>(end)]["primitives"][0]);
+        b.add_node({.mesh = mesh, .translation = glm::dvec3(0, shift, 0), .name = "beam"});
+        b.add_node({.translation = glm::dvec3(30.2, 2, -1), .role = "probe"});
+        return open_world(b);
+    };
+    const trace::FloatMode float_mode;
+    const auto before = beam(0), after = beam(0.05);
+    const bake::Settings settings = settings_of_yard(32, false);
+    const bake::Footprint footprint = bake::bake_sector(*before, {0, 0}, settings).value().footprint;
+    ASSERT_EQ(before->lights().emissive().size(), 1u);
+    const bake::EmissiveObject& light = before->lights().emissive()[0];
+    const auto changes = bake::changes_between(bake::take_inventory(*before), bake::take_inventory(*after));
+    const bake::Assessment assessment = bake::assess(footprint, settings, changes, 0, *after);
+    int in_reach = 0;
+    for (std::size_t p = 0; p < footprint.probes.size(); ++p) {
+        if (glm::distance(placement::metres(footprint.probes[p].position), light.centre) - light.radius_m > settings.reach_m) continue;
+        ++in_reach;
+        EXPECT_GE(assessment.probe_bounds[p], 1);
+    }
+    EXPECT_GT(in_reach, 0);
+}
+
 TEST(Inventory, ComesBackAsItWasStored) {
     const bake::Inventory inventory = bake::take_inventory(*open_world(Yard(5, true).build()));
     EXPECT_EQ(inventory.items.size(), 1u + 14 + 40 + 2 + 1);
