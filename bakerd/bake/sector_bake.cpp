@@ -7,6 +7,7 @@
 #include "bakerd/bake/static_gain.h"
 #include "placement/grid.h"
 
+#include <drtv/read.h>
 #include <drtv/validate.h>
 #include <drtv/write.h>
 
@@ -302,6 +303,12 @@ tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(const Sector&
     }
     for (const Finding& finding : report.findings) warnings.push_back(fmt::format("sector ({}, {}): {}", sector.i, sector.j, sentence(finding)));
     return bytes;
+}
+
+std::optional<Sector> decode_sector(std::span<const std::uint8_t> bytes) {
+    Sector sector;
+    if (!read_sector(bytes, sector).ok()) return std::nullopt;
+    return sector;
 }
 
 }  // namespace drtv::bake

@@ -2,8 +2,6 @@
 
 #include "bakerd/bake/assessment.h"
 
-#include <drtv/read.h>
-
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -125,10 +123,10 @@ std::optional<bake::EarlierBake> read_earlier(const BakeRequest& request, bake::
     const auto since = changes.map(request.earlier->inventory, problem);
     const auto file = store.get(request.earlier->file);
     auto footprint = read_footprint(request.earlier->footprint, request.sector, store, problem);
-    bake::EarlierBake earlier;
-    if (!since || !footprint || !file || !read_sector(*file, earlier.sector).ok()) return std::nullopt;
-    earlier.assessment = bake::assess(*footprint, request.settings, *since, request.settings.tolerance, world);
-    earlier.footprint = std::move(*footprint);
+    auto sector = file ? bake::decode_sector(*file) : std::nullopt;
+    if (!since || !footprint || !sector) return std::nullopt;
+    bake::EarlierBake earlier{std::move(*sector), std::move(*footprint), {}};
+    earlier.assessment = bake::assess(earlier.footprint, request.settings, *since, request.settings.tolerance, world);
     return earlier;
 }
 
