@@ -24,12 +24,11 @@ struct FootprintGrid {
     bool operator==(const FootprintGrid&) const = default;
     [[nodiscard]] std::size_t column_count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
     [[nodiscard]] std::size_t column(std::int32_t i, std::int32_t j) const { return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i); }
-    // A column's blocks stand one above the other.
-    [[nodiscard]] std::size_t block_count() const { return lowest_block(0, (rows + 1) & ~1); }
-    [[nodiscard]] std::size_t lowest_block(std::int32_t i, std::int32_t j) const {
-        return (static_cast<std::size_t>(j >> 1) * static_cast<std::size_t>((columns + 1) >> 1) + static_cast<std::size_t>(i >> 1)) * static_cast<std::size_t>((layers + 1) >> 1);
+    [[nodiscard]] std::size_t block_count() const { return block(0, (rows + 1) & ~1, 0); }
+    // Of a cell.
+    [[nodiscard]] std::size_t block(std::int32_t i, std::int32_t j, std::int32_t layer) const {
+        return (static_cast<std::size_t>(j >> 1) * static_cast<std::size_t>((columns + 1) >> 1) + static_cast<std::size_t>(i >> 1)) * static_cast<std::size_t>((layers + 1) >> 1) + static_cast<std::size_t>(layer >> 1);
     }
-    [[nodiscard]] std::size_t block(std::int32_t i, std::int32_t j, std::int32_t layer) const { return lowest_block(i, j) + static_cast<std::size_t>(layer >> 1); }
     // World metres.
     [[nodiscard]] glm::vec3 low() const { return {x * cell_m, y * cell_m, z * layer_m}; }
     [[nodiscard]] glm::vec3 high() const { return {(x + columns) * cell_m, (y + rows) * cell_m, (z + layers) * layer_m}; }

@@ -25,15 +25,8 @@ Span between(float low, float high, float origin, float direction) {
 
 FootprintRecorder::FootprintRecorder(const FootprintGrid& grid)
     : grid_(grid), crossed_(static_cast<std::size_t>(grid.columns + 2) * static_cast<std::size_t>(grid.rows + 2)),
-      lowest_blocks_(crossed_.size()), blocks_(grid.block_count() + static_cast<std::size_t>((grid.layers + 1) >> 1)), most_(grid.block_count() * quarter_count), quarters_(1) {
-    for (std::int32_t j = 0; j < grid.rows + 2; ++j) {
-        for (std::int32_t i = 0; i < grid.columns + 2; ++i) {
-            // What crosses the border by rounding stands for nothing.
-            const bool inside = i < grid.columns && j < grid.rows;
-            lowest_blocks_[static_cast<std::size_t>(j * (grid.columns + 2) + i)] = static_cast<std::int32_t>(inside ? grid.lowest_block(i, j) : grid.block_count());
-        }
-    }
-}
+      // What crosses the border by rounding counts for blocks that nobody asks for.
+      blocks_(grid.block_count() + static_cast<std::size_t>((grid.columns + 4) * (grid.layers + 1) / 2)), most_(blocks_.size() * quarter_count), quarters_(1) {}
 
 void FootprintRecorder::begin(std::size_t quarter) {
     if (++probe_ == 1u << (32 - path_bits)) {
@@ -48,7 +41,6 @@ void FootprintRecorder::begin(std::size_t quarter) {
 }
 
 void FootprintRecorder::fold(std::size_t block) {
-    if (block >= grid_.block_count()) return;
     std::uint8_t& most = most_[block * quarter_count + quarters_[blocks_[block].seen >> path_bits]];
     most = std::max(most, weight_code(blocks_[block].share));
     blocks_[block].share = 0;
@@ -79,15 +71,14 @@ void FootprintRecorder::cross(const trace::Ray& ray, float length_m, Visit visit
     const glm::vec3 scale(per_side, per_side, per_height), origin = (ray.origin - low) * scale, direction = ray.direction * scale;
     const float rise = std::abs(direction.z) * step / 2, top = static_cast<float>(grid_.layers) - 0.5f;
     const auto count = static_cast<std::int32_t>((to - from) / step) + 2;
-    const std::int32_t pitch = grid_.columns + 2;
+    const std::int32_t pitch = grid_.columns + 2, block_columns = (grid_.columns + 1) >> 1, block_layers = (grid_.layers + 1) >> 1;
     std::int32_t last_low = -1, last_high = -1;
     for (std::int32_t n = 0; n < count; ++n) {
         const float distance = std::min(from + static_cast<float>(n) * step, to), height = origin.z + direction.z * distance;
         const auto i = static_cast<std::int32_t>(origin.x + direction.x * distance), j = static_cast<std::int32_t>(origin.y + direction.y * distance);
         const auto lowest = static_cast<std::int32_t>(std::min(std::max(height - rise, 0.0f), top)), highest = static_cast<std::int32_t>(std::min(std::max(height + rise, 0.0f), top));
-        const auto column = static_cast<std::size_t>(j * pitch + i);
-        crossed_[column] |= layers_between(lowest, highest);
-        const std::int32_t low_block = lowest_blocks_[column] + (lowest >> 1), high_block = lowest_blocks_[column] + (highest >> 1);
+        crossed_[static_cast<std::size_t>(j * pitch + i)] |= layers_between(lowest, highest);
+        const std::int32_t stack = ((j >> 1) * block_columns + (i >> 1)) * block_layers, low_block = stack + (lowest >> 1), high_block = stack + (highest >> 1);
         if (low_block == last_low && high_block == last_high) continue;
         for (std::int32_t block = low_block; block <= high_block; ++block) {
             if (block < last_low || block > last_high) visit(static_cast<std::size_t>(block));

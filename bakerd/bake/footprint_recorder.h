@@ -43,7 +43,6 @@ class FootprintRecorder {
 
     const FootprintGrid grid_;
     std::vector<std::uint64_t> crossed_;  // by column; with a border of one, where a walk may end by rounding
-    std::vector<std::int32_t> lowest_blocks_;  // by column, likewise
     std::vector<Block> blocks_;
     std::vector<std::uint8_t> most_;      // of the probes before, as codes by block and quarter
     std::vector<std::uint8_t> quarters_;   // by probe
