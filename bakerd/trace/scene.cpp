@@ -38,13 +38,17 @@ glm::mat3 normal_transform(const glm::mat4x3& world_from_object) {
     return glm::mat3(glm::dmat3(glm::cross(y, z) * sign, glm::cross(z, x) * sign, glm::cross(x, y) * sign));
 }
 
-// Height of the triangle's plane at a point inside its plan, from its vertices alone: the distance along a line
-// of kilometres would have lost the digits. Nothing for a vertical triangle.
-std::optional<double> height_on_triangle(const map::Object& object, const map::Primitive& primitive, std::uint32_t triangle, glm::vec2 at) {
+std::array<glm::dvec3, 3> world_corners(const map::Object& object, const map::Primitive& primitive, std::uint32_t triangle) {
     const glm::uvec3& t = primitive.triangles[triangle];
     const glm::dmat4x3 world_from_object(object.world_from_object);
     const auto corner = [&](std::uint32_t vertex) { return world_from_object * glm::dvec4(primitive.positions[vertex], 1); };
-    const glm::dvec3 a = corner(t.x), b = corner(t.y), c = corner(t.z);
+    return {corner(t.x), corner(t.y), corner(t.z)};
+}
+
+// Height of the triangle's plane at a point inside its plan, from its vertices alone: the distance along a line
+// of kilometres would have lost the digits. Nothing for a vertical triangle.
+std::optional<double> height_on_triangle(const map::Object& object, const map::Primitive& primitive, std::uint32_t triangle, glm::vec2 at) {
+    const auto [a, b, c] = world_corners(object, primitive, triangle);
     const glm::dvec3 normal = glm::cross(b - a, c - a);
     if (std::abs(normal.z) <= 1e-6 * glm::length(normal)) return std::nullopt;
     const double z_m = a.z - (normal.x * (double{at.x} - a.x) + normal.y * (double{at.y} - a.y)) / normal.z;
@@ -260,10 +264,8 @@ float Scene::distance_to_surface(const glm::vec3& point, float most_m) const {
         const bool instanced = found->context->instStackSize > 0;
         const TriangleSet& set = instanced ? scene.set_of(found->context->instID[0], found->geomID) : *scene.large_sets_[found->geomID - scene.map_->objects.size()];
         const map::Object& object = scene.map_->objects[scene.object_index(instanced ? found->context->instID[0] : set.instance)];
-        const glm::dmat4x3 world_from_object(object.world_from_object);
-        const glm::uvec3& triangle = set.primitive->triangles[set.triangle_of(found->primID)];
-        const auto corner = [&](std::uint32_t vertex) { return world_from_object * glm::dvec4(set.primitive->positions[vertex], 1); };
-        const auto distance_m = static_cast<float>(distance_to_triangle(at, corner(triangle.x), corner(triangle.y), corner(triangle.z)));
+        const auto [a, b, c] = world_corners(object, *set.primitive, set.triangle_of(found->primID));
+        const auto distance_m = static_cast<float>(distance_to_triangle(at, a, b, c));
         if (!(distance_m < found->query->radius)) return false;
         found->query->radius = distance_m;
         return true;

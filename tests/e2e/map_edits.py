@@ -56,23 +56,23 @@ def _shift(node, rng, metres):
         at[axis] += rng.uniform(-metres, metres)
 
 
-def move_plant(map_, rng):
-    number = rng.choice(map_.plants())
-    _shift(map_.nodes[number], rng, 6)
+def _move(map_, number, rng, metres):
+    _shift(map_.nodes[number], rng, metres)
     return f"node {number} ({map_.nodes[number].get('name')})"
+
+
+def move_plant(map_, rng):
+    return _move(map_, rng.choice(map_.plants()), rng, 6)
 
 
 def move_far(map_, rng):
-    number = rng.choice(map_.plants())
-    _shift(map_.nodes[number], rng, 200)
-    return f"node {number} ({map_.nodes[number].get('name')})"
+    return _move(map_, rng.choice(map_.plants()), rng, 200)
 
 
 def move_building(map_, rng):
     plants = set(map_.plants())
     number = rng.choice([number for number in map_.placed() if number not in plants])
-    _shift(map_.nodes[number], rng, 3)
-    return f"node {number} ({map_.nodes[number].get('name')})"
+    return _move(map_, number, rng, 3)
 
 
 def delete_plant(map_, rng):
@@ -128,9 +128,7 @@ def edit_shared_mesh(map_, rng):
 
 
 def move_light(map_, rng):
-    number = rng.choice(map_.lights())
-    _shift(map_.nodes[number], rng, 0.3)
-    return f"node {number} ({map_.nodes[number].get('name')})"
+    return _move(map_, rng.choice(map_.lights()), rng, 0.3)
 
 
 def dim_light(map_, rng):
