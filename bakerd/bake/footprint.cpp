@@ -164,7 +164,8 @@ FootprintGrid footprint_grid(map::SectorCoordinate sector, float distance_m, flo
     if (!(low_m < high_m)) low_m = high_m = 0;
     low_m -= headroom_m;
     high_m += headroom_m;
-    grid.layer_m = least_layer_m;
+    // A block is at least as high as the points of a ray lie apart (footprint_recorder.cpp).
+    grid.layer_m = std::max(least_layer_m, grid.cell_m / 4);
     while (high_m - low_m > static_cast<float>((most_layers - 2) * grid.layer_m)) grid.layer_m *= 2;
     grid.z = static_cast<std::int32_t>(std::floor(low_m / static_cast<float>(grid.layer_m)));
     grid.layers = static_cast<std::int32_t>(std::ceil(high_m / static_cast<float>(grid.layer_m))) - grid.z;

@@ -1,6 +1,10 @@
 #include "bakerd/bake/footprint_recorder.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 namespace drtv::bake {
@@ -21,94 +25,138 @@ Span between(float low, float high, float origin, float direction) {
     return {std::min(a, b), std::max(a, b)};
 }
 
+// For each choice of 8 lanes their numbers, one byte each from the lowest.
+constexpr std::array<std::uint64_t, 256> chosen_lanes = [] {
+    std::array<std::uint64_t, 256> table{};
+    for (unsigned choice = 0; choice < table.size(); ++choice) {
+        unsigned shift = 0;
+        for (unsigned lane = 0; lane < 8; ++lane) {
+            if ((choice >> lane & 1u) == 0) continue;
+            table[choice] |= std::uint64_t{lane} << shift;
+            shift += 8;
+        }
+    }
+    return table;
+}();
+
+// Appends the lanes that are chosen, and leaves what it likes beyond. REQUIRES: room for 8.
+std::int32_t* append(std::int32_t* end, __m256i lanes, unsigned choice) {
+    const __m256i order = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(chosen_lanes[choice])));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(end), _mm256_permutevar8x32_epi32(lanes, order));
+    return end + std::popcount(choice);
+}
+
+// Lanes, each with its bit, in which two differ.
+unsigned differing(__m256i a, __m256i b) { return ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)))) & 0xFFu; }
+
+// Eight numbers that go on from `before`: each lane's predecessor.
+__m256i predecessors(__m256i lanes, __m256i before) {
+    const __m256i turn = _mm256_setr_epi32(7, 0, 1, 2, 3, 4, 5, 6);
+    return _mm256_blend_epi32(_mm256_permutevar8x32_epi32(lanes, turn), _mm256_permutevar8x32_epi32(before, turn), 1);
+}
+
 }  // namespace
 
 FootprintRecorder::FootprintRecorder(const FootprintGrid& grid)
     : grid_(grid), crossed_(static_cast<std::size_t>(grid.columns + 2) * static_cast<std::size_t>(grid.rows + 2)),
       // What crosses the border by rounding counts for blocks that nobody asks for.
-      blocks_(grid.block_count() + static_cast<std::size_t>((grid.columns + 4) * (grid.layers + 1) / 2)), most_(blocks_.size() * quarter_count), quarters_(1) {}
+      blocks_(grid.block_count() + static_cast<std::size_t>((grid.columns + 4) * (grid.layers + 1) / 2)) {
+    for (std::vector<float>& most : most_) most.resize(blocks_.size());
+}
 
 void FootprintRecorder::begin(std::size_t quarter) {
-    if (++probe_ == 1u << (32 - path_bits)) {
-        for (std::size_t n = 0; n < grid_.block_count(); ++n) {
-            fold(n);
-            blocks_[n].seen = 0;
-        }
-        probe_ = 1;
-        quarters_.resize(1);
+    fold();
+    quarter_ = quarter;
+    number_.reset();
+}
+
+// The probe's shares join those of its quarter.
+void FootprintRecorder::fold() {
+    std::vector<float>& most = most_[quarter_];
+    for (std::size_t n = 0; n < blocks_.size(); ++n) {
+        most[n] = std::max(most[n], blocks_[n].share);
+        blocks_[n].share = 0;
     }
-    quarters_.push_back(static_cast<std::uint8_t>(quarter));
 }
 
-void FootprintRecorder::fold(std::size_t block) {
-    std::uint8_t& most = most_[block * quarter_count + quarters_[blocks_[block].seen >> path_bits]];
-    most = std::max(most, weight_code(blocks_[block].share));
-    blocks_[block].share = 0;
-}
-
-FootprintRecorder::Block& FootprintRecorder::current(std::size_t block) {
-    if (blocks_[block].seen >> path_bits != probe_) {
-        fold(block);
-        blocks_[block].seen = probe_ << path_bits;
-    }
-    return blocks_[block];
-}
-
-// Takes points along the ray, footprint_step apart, and at each all heights up to half way to the next. Cheaper than to find each side that the ray crosses, because
-// no point waits for the one before; what lies in the map is grown sideways by half a step before it is looked up.
-template <class Visit>
-void FootprintRecorder::cross(const trace::Ray& ray, float length_m, Visit visit) {
+// Takes points along the ray, footprint_step apart, and at each all heights up to half way to the next: no point waits for the one before, as sides of cells
+// would, and eight are taken at once. What lies in the map is grown sideways by half a step before it is looked up. From a point to the next the heights move on by
+// one block at most (footprint_grid), so that those in front and behind are all there are.
+std::span<const std::int32_t> FootprintRecorder::cross(const trace::Ray& ray, float length_m) {
     const glm::vec3 low = grid_.low(), high = grid_.high();
     float from = 0, to = length_m;
     if (const float end = ray.origin.z + ray.direction.z * length_m; ray.origin.z < low.z || ray.origin.z >= high.z || end < low.z || end >= high.z) {
         const Span heights = between(low.z, high.z, ray.origin.z, ray.direction.z);
         from = std::max(heights.from, 0.0f);
         to = std::min(heights.to, length_m);
-        if (!(from <= to)) return;
+        if (!(from <= to)) return {};
     }
     const float per_side = 1 / static_cast<float>(grid_.cell_m), per_height = 1 / static_cast<float>(grid_.layer_m);  // exact: powers of two
     const float step = static_cast<float>(grid_.cell_m) * footprint_step;
     const glm::vec3 scale(per_side, per_side, per_height), origin = (ray.origin - low) * scale, direction = ray.direction * scale;
-    const float rise = std::abs(direction.z) * step / 2, top = static_cast<float>(grid_.layers) - 0.5f;
+    const float rise = direction.z * step / 2, top = static_cast<float>(grid_.layers) - 0.5f;
+    constexpr std::int32_t width = 8;
     const auto count = static_cast<std::int32_t>((to - from) / step) + 2;
-    const std::int32_t pitch = grid_.columns + 2, block_columns = (grid_.columns + 1) >> 1, block_layers = (grid_.layers + 1) >> 1;
-    std::int32_t last_low = -1, last_high = -1;
-    for (std::int32_t n = 0; n < count; ++n) {
-        const float distance = std::min(from + static_cast<float>(n) * step, to), height = origin.z + direction.z * distance;
-        const auto i = static_cast<std::int32_t>(origin.x + direction.x * distance), j = static_cast<std::int32_t>(origin.y + direction.y * distance);
-        const auto lowest = static_cast<std::int32_t>(std::min(std::max(height - rise, 0.0f), top)), highest = static_cast<std::int32_t>(std::min(std::max(height + rise, 0.0f), top));
-        crossed_[static_cast<std::size_t>(j * pitch + i)] |= layers_between(lowest, highest);
-        const std::int32_t stack = ((j >> 1) * block_columns + (i >> 1)) * block_layers, low_block = stack + (lowest >> 1), high_block = stack + (highest >> 1);
-        if (low_block == last_low && high_block == last_high) continue;
-        for (std::int32_t block = low_block; block <= high_block; ++block) {
-            if (block < last_low || block > last_high) visit(static_cast<std::size_t>(block));
-        }
-        last_low = low_block;
-        last_high = high_block;
+    if (const std::size_t room = 2 * static_cast<std::size_t>(count + width); list_.size() < room) list_.resize(room);
+
+    const auto all = [](float value) { return _mm256_set1_ps(value); };
+    const auto along = [&](glm::length_t axis, __m256 distance) { return _mm256_add_ps(all(origin[axis]), _mm256_mul_ps(all(direction[axis]), distance)); };
+    const auto layer_at = [&](__m256 height) { return _mm256_cvttps_epi32(_mm256_min_ps(_mm256_max_ps(height, _mm256_setzero_ps()), all(top))); };
+    const __m256i pitch = _mm256_set1_epi32(grid_.columns + 2), block_columns = _mm256_set1_epi32((grid_.columns + 1) >> 1), block_layers = _mm256_set1_epi32((grid_.layers + 1) >> 1);
+    __m256 number = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+    __m256i last_stacks = _mm256_set1_epi32(-1), last_fronts = last_stacks;
+    std::int32_t* end = list_.data();
+    for (std::int32_t n = 0; n < count; n += width) {
+        // Beyond the end the last point again: it adds nothing.
+        const __m256 distance = _mm256_min_ps(_mm256_add_ps(all(from), _mm256_mul_ps(number, all(step))), all(to));
+        number = _mm256_add_ps(number, all(width));
+        const __m256i i = _mm256_cvttps_epi32(along(0, distance)), j = _mm256_cvttps_epi32(along(1, distance));
+        const __m256 height = along(2, distance);
+        const __m256i front = layer_at(_mm256_add_ps(height, all(rise))), back = layer_at(_mm256_sub_ps(height, all(rise)));
+        alignas(32) std::array<std::int32_t, width> cells, lowest, highest;
+        _mm256_store_si256(reinterpret_cast<__m256i*>(cells.data()), _mm256_add_epi32(_mm256_mullo_epi32(j, pitch), i));
+        _mm256_store_si256(reinterpret_cast<__m256i*>(lowest.data()), _mm256_min_epi32(front, back));
+        _mm256_store_si256(reinterpret_cast<__m256i*>(highest.data()), _mm256_max_epi32(front, back));
+        const __m256i stacks = _mm256_mullo_epi32(_mm256_add_epi32(_mm256_mullo_epi32(_mm256_srai_epi32(j, 1), block_columns), _mm256_srai_epi32(i, 1)), block_layers);
+        const __m256i fronts = _mm256_add_epi32(stacks, _mm256_srai_epi32(front, 1)), backs = _mm256_add_epi32(stacks, _mm256_srai_epi32(back, 1));
+        end = append(end, fronts, differing(fronts, predecessors(fronts, last_fronts)));
+        end = append(end, backs, differing(stacks, predecessors(stacks, last_stacks)) & differing(fronts, backs));
+        last_fronts = fronts;
+        last_stacks = stacks;
+        for (std::size_t k = 0; k < width; ++k) crossed_[static_cast<std::size_t>(cells[k])] |= layers_between(lowest[k], highest[k]);
     }
+    return {list_.data(), end};
 }
 
 void FootprintRecorder::path(const trace::Ray& ray, float length_m, float share, std::uint32_t number) {
     const float weight = std::max(share, least_share);
-    const std::uint32_t seen = probe_ << path_bits | (number + 1);
-    cross(ray, length_m, [&](std::size_t index) {
-        Block& block = current(index);
-        block.share += block.seen == seen ? 0 : weight;
-        block.seen = seen;
-    });
+    if (number_ != number) {
+        number_ = number;
+        ++path_;
+    }
+    for (const std::int32_t index : cross(ray, length_m)) {
+        Block& block = blocks_[static_cast<std::size_t>(index)];
+        block.share += block.seen == path_ ? 0 : weight;
+        block.seen = path_;
+    }
 }
 
 void FootprintRecorder::lone(const trace::Ray& ray, float share) {
     const float weight = std::max(share, least_share);
-    cross(ray, ray.far_m, [&](std::size_t index) { current(index).share += weight; });
+    for (const std::int32_t index : cross(ray, ray.far_m)) blocks_[static_cast<std::size_t>(index)].share += weight;
 }
 
 void FootprintRecorder::merge_into(Footprint& footprint) {
     for (std::int32_t j = 0; j < grid_.rows; ++j) {
         for (std::int32_t i = 0; i < grid_.columns; ++i) footprint.crossed[grid_.column(i, j)] |= crossed_[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.columns + 2) + static_cast<std::size_t>(i)];
     }
-    for (std::size_t n = 0; n < grid_.block_count(); ++n) fold(n);
-    for (std::size_t n = 0; n < footprint.weights.size(); ++n) footprint.weights[n] = std::max(footprint.weights[n], most_[n]);
+    fold();
+    for (std::size_t quarter = 0; quarter < quarter_count; ++quarter) {
+        for (std::size_t n = 0; n < grid_.block_count(); ++n) {
+            std::uint8_t& weight = footprint.weights[n * quarter_count + quarter];
+            weight = std::max(weight, weight_code(most_[quarter][n]));
+        }
+    }
 }
 
 }  // namespace drtv::bake

@@ -6,7 +6,10 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace drtv::bake {
@@ -31,22 +34,22 @@ class FootprintRecorder {
   private:
     // Small: a sector's blocks should stay in the caches.
     struct Block {
-        std::uint32_t seen = 0;  // by which probe and path last
-        float share = 0;         // of that probe
+        std::uint32_t seen = 0;  // by which path last
+        float share = 0;         // of the probe at work
     };
-    static constexpr std::uint32_t path_bits = 17;
 
-    template <class Visit>
-    void cross(const trace::Ray& ray, float length_m, Visit visit);
-    void fold(std::size_t block);
-    [[nodiscard]] Block& current(std::size_t block);
+    // Gives the blocks that the ray crosses, each once; they stand until the next call.
+    [[nodiscard]] std::span<const std::int32_t> cross(const trace::Ray& ray, float length_m);
+    void fold();
 
     const FootprintGrid grid_;
     std::vector<std::uint64_t> crossed_;  // by column; with a border of one, where a walk may end by rounding
     std::vector<Block> blocks_;
-    std::vector<std::uint8_t> most_;      // of the probes before, as codes by block and quarter
-    std::vector<std::uint8_t> quarters_;   // by probe
-    std::uint32_t probe_ = 0;
+    std::array<std::vector<float>, quarter_count> most_;  // by block: the largest share of the probes before
+    std::vector<std::int32_t> list_;                      // of a ray's blocks
+    std::size_t quarter_ = 0;
+    std::optional<std::uint32_t> number_;  // of the probe's path at work
+    std::uint32_t path_ = 0;               // the same, of all probes
 };
 
 // One for each thread that asks.
