@@ -342,10 +342,8 @@ class Assessor {
         for (const Bounds& box : boxes) {
             // Above and below the grid rays go unseen.
             if (box.low.z < grid.low().z || box.high.z > grid.high().z) shares.fill(unbounded);
-            const float half_step_m = cell.x * footprint_step / 2;
-            const Bounds reached = grown(box, {half_step_m, half_step_m, 0});
-            if (!overlap(reached, {grid.low(), grid.high()})) continue;
-            const glm::ivec3 from(glm::clamp(glm::floor((reached.low - grid.low()) / cell), glm::vec3(0), last)), to(glm::clamp(glm::floor((reached.high - grid.low()) / cell), glm::vec3(0), last));
+            if (!overlap(box, {grid.low(), grid.high()})) continue;
+            const glm::ivec3 from(glm::clamp(glm::floor((box.low - grid.low()) / cell), glm::vec3(0), last)), to(glm::clamp(glm::floor((box.high - grid.low()) / cell), glm::vec3(0), last));
             for (std::int32_t j = from.y; j <= to.y; ++j) {
                 for (std::int32_t i = from.x; i <= to.x; ++i) {
                     std::uint64_t crossed = footprint_.crossed[grid.column(i, j)] & layers_between(from.z, to.z);

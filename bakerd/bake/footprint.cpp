@@ -21,7 +21,7 @@ constexpr float headroom_m = 16;
 
 constexpr int least_weight_exponent = -14;
 
-constexpr std::uint64_t magic = 0x32'50'46'56'54'52'44;  // "DRTVFP2"
+constexpr std::uint64_t magic = 0x50'46'56'54'52'44;  // "DRTVFP"
 constexpr std::uint32_t most_rays = 1u << 16;
 constexpr std::int32_t most_place = 1 << 18;
 
@@ -164,8 +164,8 @@ FootprintGrid footprint_grid(map::SectorCoordinate sector, float distance_m, flo
     if (!(low_m < high_m)) low_m = high_m = 0;
     low_m -= headroom_m;
     high_m += headroom_m;
-    // A block is at least as high as the points of a ray lie apart (footprint_recorder.cpp).
-    grid.layer_m = std::max(least_layer_m, grid.cell_m / 4);
+    // A block is at least as high as a cell is wide: from a point of a ray to the next it is one block at most (footprint_recorder.cpp).
+    grid.layer_m = std::max(least_layer_m, grid.cell_m / 2);
     while (high_m - low_m > static_cast<float>((most_layers - 2) * grid.layer_m)) grid.layer_m *= 2;
     grid.z = static_cast<std::int32_t>(std::floor(low_m / static_cast<float>(grid.layer_m)));
     grid.layers = static_cast<std::int32_t>(std::ceil(high_m / static_cast<float>(grid.layer_m))) - grid.z;
@@ -195,6 +195,7 @@ float weight_of_code(std::uint8_t code) {
 std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
     StoredWriter writer;
     writer.add(magic);
+    writer.add(footprint_version);
     writer.add(footprint.sector);
     writer.add(footprint.reach_m);
     writer.add(footprint.rays);
@@ -218,7 +219,7 @@ std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
 
 std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     StoredReader reader(bytes);
-    if (reader.read<std::uint64_t>() != magic) return std::nullopt;
+    if (reader.read<std::uint64_t>() != magic || reader.read<std::uint32_t>() != footprint_version) return std::nullopt;
     Footprint footprint;
     footprint.sector = reader.read<map::SectorCoordinate>();
     footprint.reach_m = reader.read<float>();

@@ -14,6 +14,9 @@
 
 namespace drtv::bake {
 
+// Of what a record says, and how: results whose record is of another version are never candidates.
+inline constexpr std::uint32_t footprint_version = 3;
+
 // The space around a sector, as far as its rays go, in cells that are aligned to the world: columns side by side, at most 64 layers high, some way above and below
 // what stands there. Where it ends upwards and downwards, rays go on unseen. Weights are kept of blocks of 2 x 2 x 2 cells.
 struct FootprintGrid {
@@ -36,9 +39,6 @@ struct FootprintGrid {
 
 // Covers `distance_m` around the sector; `low_m` and `high_m` are the heights of the scene.
 [[nodiscard]] FootprintGrid footprint_grid(map::SectorCoordinate sector, float distance_m, float low_m, float high_m);
-
-// Rays are noted by points so many cells' widths apart.
-inline constexpr float footprint_step = 0.5f;
 
 // Probes of a quarter of the sector share their weights: what many of them hardly see, some see well.
 inline constexpr std::size_t quarter_count = 4;

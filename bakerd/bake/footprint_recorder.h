@@ -41,12 +41,16 @@ class FootprintRecorder {
     // Gives the blocks that the ray crosses, each once; they stand until the next call.
     [[nodiscard]] std::span<const std::int32_t> cross(const trace::Ray& ray, float length_m);
     void fold();
+    void cross_corners();
 
     const FootprintGrid grid_;
     std::vector<std::uint64_t> crossed_;  // by column; with a border of one, where a walk may end by rounding
     std::vector<Block> blocks_;
     std::array<std::vector<float>, quarter_count> most_;  // by block: the largest share of the probes before
     std::vector<std::int32_t> list_;                      // of a ray's blocks
+    // Columns that rays passed at a corner, and their layers, highest x 256 + lowest. Many in one go: a branch at each would cost more than all the rest.
+    std::vector<std::int32_t> corner_columns_, corner_layers_;
+    std::size_t corners_ = 0;
     std::size_t quarter_ = 0;
     std::optional<std::uint32_t> number_;  // of the probe's path at work
     std::uint32_t path_ = 0;               // the same, of all probes

@@ -142,7 +142,7 @@ class Database::Statement {
         row.id = integer();
         row.sector.i = static_cast<std::int32_t>(integer());
         row.sector.j = static_cast<std::int32_t>(integer());
-        row.settings_key = stored_digest(text());
+        row.results_key = stored_digest(text());
         row.result.result = stored_digest(text());
         row.result.size_bytes = integer();
         row.result.probes = integer();
@@ -362,16 +362,16 @@ Result<std::optional<TaskRow>> Database::task_by_key(const Digest& key) {
 Result<void> Database::insert_result(ResultRow& row) {
     if (auto done = execute("UPDATE counter SET value = value + 1 WHERE name = 'uses'"); !done) return done;
     Statement statement(*this, fmt::format("INSERT INTO result ({}, used) VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, (SELECT value FROM counter WHERE name = 'uses'))", result_columns));
-    statement.bind(row.sector.i).bind(row.sector.j).bind(to_hex(row.settings_key)).bind(to_hex(row.result.result)).bind(row.result.size_bytes).bind(row.result.probes).bind(row.result.rays);
+    statement.bind(row.sector.i).bind(row.sector.j).bind(to_hex(row.results_key)).bind(to_hex(row.result.result)).bind(row.result.size_bytes).bind(row.result.probes).bind(row.result.rays);
     statement.bind(joined(row.result.warnings)).bind(to_hex(row.result.footprint)).bind(to_hex(row.result.inventory)).bind(row.result.footprint_bytes).bind_real(row.result.seconds).bind_real(row.result.bound);
     if (auto done = statement.run(); !done) return done;
     row.id = sqlite3_last_insert_rowid(handle_);
     return {};
 }
 
-Result<std::vector<ResultRow>> Database::results(map::SectorCoordinate sector, const Digest& settings_key, std::size_t most) {
+Result<std::vector<ResultRow>> Database::results(map::SectorCoordinate sector, const Digest& results_key, std::size_t most) {
     Statement statement(*this, fmt::format("SELECT {} FROM result WHERE i = ? AND j = ? AND settings_key = ? ORDER BY used DESC LIMIT ?", result_columns));
-    return statement.bind(sector.i).bind(sector.j).bind(to_hex(settings_key)).bind(static_cast<std::int64_t>(most)).all_results();
+    return statement.bind(sector.i).bind(sector.j).bind(to_hex(results_key)).bind(static_cast<std::int64_t>(most)).all_results();
 }
 
 Result<void> Database::mark_used(map::SectorCoordinate sector, const Digest& file) {
@@ -401,9 +401,9 @@ Result<bool> Database::is_needed(const Digest& blob) {
     return statement.integer() != 0;
 }
 
-Result<double> Database::mean_seconds(const Digest& settings_key) {
+Result<double> Database::mean_seconds(const Digest& results_key) {
     Statement statement(*this, "SELECT coalesce((SELECT avg(seconds) FROM result WHERE settings_key = ?), (SELECT avg(seconds) FROM result), 0)");
-    const auto row = statement.bind(to_hex(settings_key)).step();
+    const auto row = statement.bind(to_hex(results_key)).step();
     if (!row) return tl::unexpected(row.error());
     return statement.real();
 }

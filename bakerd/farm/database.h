@@ -43,7 +43,7 @@ struct TaskRow {
 struct ResultRow {
     std::int64_t id = 0;
     map::SectorCoordinate sector;
-    Digest settings_key;
+    Digest results_key;  // bake::results_key
     BakeAnswer result;
 };
 
@@ -105,7 +105,7 @@ class Database {
     // Sets `row.id`. It counts as the one used last.
     [[nodiscard]] Result<void> insert_result(ResultRow& row);
     // Of one sector, the one used last first.
-    [[nodiscard]] Result<std::vector<ResultRow>> results(map::SectorCoordinate sector, const Digest& settings_key, std::size_t most);
+    [[nodiscard]] Result<std::vector<ResultRow>> results(map::SectorCoordinate sector, const Digest& results_key, std::size_t most);
     // Of the result with that file.
     [[nodiscard]] Result<void> mark_used(map::SectorCoordinate sector, const Digest& file);
     // Those used longest ago, without any that a running job holds.
@@ -114,7 +114,7 @@ class Database {
     // Whether a result or a running job has the blob as its file, footprint or inventory.
     [[nodiscard]] Result<bool> is_needed(const Digest& blob);
     // Mean of what sectors took with these settings, or with any when there are none; 0 without results.
-    [[nodiscard]] Result<double> mean_seconds(const Digest& settings_key);
+    [[nodiscard]] Result<double> mean_seconds(const Digest& results_key);
     [[nodiscard]] Result<void> count(std::int64_t hits, std::int64_t near_hits, std::int64_t baked);
     [[nodiscard]] Result<CacheCounts> cache_counts();
 

@@ -349,7 +349,7 @@ void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& ou
 // Without it the file is still there for its job; only no later one finds it.
 void Farm::keep_result(const TaskRow& task) {
     const BakeAnswer& baked = task.result;
-    ResultRow row{0, task.sector, bake::settings_key(task.settings), baked};
+    ResultRow row{0, task.sector, bake::results_key(task.settings), baked};
     const auto kept = database_->transaction([&]() -> Result<void> {
         if (auto inserted = database_->insert_result(row); !inserted) return inserted;
         return database_->count(0, 0, 1);

@@ -44,8 +44,8 @@ Digest task_key(const Digest& content, const bake::Settings& settings, map::Sect
 Result<Plan> look_up(Database& database, const BlobStore& blobs, const InspectAnswer& map, const bake::Settings& settings, const std::vector<map::SectorCoordinate>& sectors) {
     bake::Settings exact = settings;
     exact.tolerance = 0;
-    const Digest settings_key = bake::settings_key(settings);
-    const auto mean_seconds = database.mean_seconds(settings_key);
+    const Digest results_key = bake::results_key(settings);
+    const auto mean_seconds = database.mean_seconds(results_key);
     if (!mean_seconds) return tl::unexpected(mean_seconds.error());
     Plan plan;
     for (const map::SectorCoordinate& sector : sectors) {
@@ -61,7 +61,7 @@ Result<Plan> look_up(Database& database, const BlobStore& blobs, const InspectAn
         }
         if (planned.reused) continue;
         planned.reason = "it was not baked before";
-        auto rows = database.results(sector, settings_key, most_candidates);
+        auto rows = database.results(sector, results_key, most_candidates);
         if (!rows) return tl::unexpected(rows.error());
         for (ResultRow& row : *rows) {
             if (!blobs.has(row.result.result)) continue;

@@ -48,12 +48,12 @@ TEST(FootprintGrid, CoversTheDistanceAndTheHeights) {
     }
 }
 
-// Whatever point of a ray is asked for, a cell within half a step beside it is marked.
+// Whatever point of a ray is asked for, its cell is marked.
 TEST(FootprintRecorder, NoPointOfARayIsMissing) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> place(-100, 160), height(-30, 60), along(0, 1), sphere(-1, 1);
     const bake::FootprintGrid grid = bake::footprint_grid({0, 0}, 200, -10, 40);
-    const float half_m = static_cast<float>(grid.cell_m) * bake::footprint_step / 2 + 0.01f;
+    const float rounding_m = 0.01f;
     for (int n = 0; n < 300; ++n) {
         bake::FootprintRecorders recorders(grid);
         bake::FootprintRecorder& recorder = recorders.of_this_thread();
@@ -71,8 +71,8 @@ TEST(FootprintRecorder, NoPointOfARayIsMissing) {
             const glm::vec3 point = ray.origin + ray.direction * (ray.far_m * along(random));
             if (point.z <= grid.low().z + 0.01f || point.z >= grid.high().z - 0.01f) continue;
             bool marked = false;
-            for (const float dx : {-half_m, 0.0f, half_m}) {
-                for (const float dy : {-half_m, 0.0f, half_m}) {
+            for (const float dx : {-rounding_m, 0.0f, rounding_m}) {
+                for (const float dy : {-rounding_m, 0.0f, rounding_m}) {
                     for (const float dz : {-0.01f, 0.01f}) {
                         const glm::ivec3 cell(glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
                         if (cell.x < 0 || cell.y < 0 || cell.z < 0 || cell.x >= grid.columns || cell.y >= grid.rows || cell.z >= grid.layers) continue;
@@ -142,7 +142,7 @@ TEST(FootprintRecorder, AllLaterRaysOfAProbeAreNoted) {
     static_cast<void>(bake::integrate_probe(*scene, world->lights(), glm::ivec3(probe * 1024.0f), samples, {3, reach_m, 0}, {&recorders.of_this_thread(), &log}));
     bake::Footprint footprint;
     recorders.store(footprint);
-    const float half_m = static_cast<float>(grid.cell_m) * bake::footprint_step / 2 + 0.01f;
+    const float rounding_m = 0.01f;
     int later = 0, missing = 0;
     const auto look = [&](const trace::Ray& ray, float length_m) {
         ++later;
@@ -150,8 +150,8 @@ TEST(FootprintRecorder, AllLaterRaysOfAProbeAreNoted) {
             const glm::vec3 point = ray.origin + ray.direction * at;
             if (point.z < grid.low().z || point.z >= grid.high().z) continue;
             bool marked = false;
-            for (const float dx : {-half_m, 0.0f, half_m}) {
-                for (const float dy : {-half_m, 0.0f, half_m}) {
+            for (const float dx : {-rounding_m, 0.0f, rounding_m}) {
+                for (const float dy : {-rounding_m, 0.0f, rounding_m}) {
                     for (const float dz : {-0.01f, 0.0f, 0.01f}) {
                         const glm::ivec3 cell(glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
                         marked |= (footprint.crossed[grid.column(cell.x, cell.y)] >> cell.z & 1u) != 0;
