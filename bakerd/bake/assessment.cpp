@@ -190,7 +190,8 @@ class Assessor {
         std::vector<Bounds> boxes;
         for (const Change& change : changes) std::ranges::copy(boxes_of(change), std::back_inserter(boxes));
         std::erase_if(boxes, [&](const Bounds& box) { return !within_reach({&box, 1}); });
-        assessment_.gain = std::max(1.0f, footprint_.static_gain + static_gain(world_.lights(), boxes, settings_));
+        const float before = footprint_.most_scattered, now = std::max(before, world_.most_scattered());
+        assessment_.gain = std::max(1.0f, static_gain(footprint_.static_gain, before, now, settings_) + static_gain(world_.lights(), now, boxes, settings_));
         for (const ProbeRecord& probe : footprint_.probes) assessment_.probe_bounds.push_back(probe.share * assessment_.gain);
         for (std::size_t n = 0; n < changes.size() && !settled(); ++n) {
             const auto [weight, cause] = weigh(changes[n]);

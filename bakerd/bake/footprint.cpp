@@ -201,6 +201,7 @@ std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
     writer.add(footprint.rays);
     writer.add(footprint.without_bounds);
     writer.add(footprint.static_gain);
+    writer.add(footprint.most_scattered);
     writer.add(footprint.placement_m);
     writer.add(footprint.min_distance_m);
     add_records(writer, footprint.probes);
@@ -226,6 +227,7 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     footprint.rays = reader.read<std::uint32_t>();
     footprint.without_bounds = reader.read<std::uint8_t>() != 0;
     footprint.static_gain = reader.read<float>();
+    footprint.most_scattered = reader.read<float>();
     footprint.placement_m = reader.read<float>();
     footprint.min_distance_m = reader.read<float>();
     footprint.probes = read_records<ProbeRecord>(reader);
@@ -240,7 +242,7 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     footprint.solid_tests = read_records<SolidTest>(reader);
     if (!reader.complete() || footprint.rays == 0 || footprint.rays > most_rays || footprint.probes.size() > max_probes) return std::nullopt;
     const auto sensible = [](float value) { return value >= 0 && std::isfinite(value); };
-    if (!sensible(footprint.reach_m) || !sensible(footprint.static_gain) || !sensible(footprint.placement_m) || !sensible(footprint.min_distance_m)) return std::nullopt;
+    if (!sensible(footprint.reach_m) || !sensible(footprint.static_gain) || !(footprint.most_scattered > 0 && std::isfinite(footprint.most_scattered)) || !sensible(footprint.placement_m) || !sensible(footprint.min_distance_m)) return std::nullopt;
     if (!std::ranges::all_of(footprint.probes, [&](const ProbeRecord& probe) { return sensible(probe.share); })) return std::nullopt;
     const std::vector<std::size_t> blocks = crossed_blocks(footprint);
     if (weights.size() != blocks.size() * quarter_count) return std::nullopt;

@@ -85,6 +85,7 @@ struct Footprint {
     bool without_bounds = false;
     // The most that a path can bring from static lights, over static_irradiance_range (static_gain.h); 0 where there are none. Of all maps whose probes are here.
     float static_gain = 0;
+    float most_scattered = 1;  // of their surfaces (trace::most_scattered), above 0
     float placement_m = 0;     // how far around the sector placement looked down its columns
     float min_distance_m = 0;  // between probes
 

@@ -13,16 +13,15 @@
 namespace drtv::bake {
 namespace {
 
-constexpr float reflected = map::max_albedo * std::numbers::inv_pi_v<float>;
 // Nearer to a lamp than this counts as this: far above any tolerance all the same.
 constexpr float least_distance_m = 0.001f;
 
 float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
 
 // Of light of that radiance at each of so many points of a path.
-float of_path(float radiance, std::uint32_t points) {
+float of_path(float radiance, float scattered, std::uint32_t points) {
     float sum = 0, left = 1;
-    for (std::uint32_t point = 0; point < points; ++point, left *= map::max_albedo) sum += left;
+    for (std::uint32_t point = 0; point < points; ++point, left *= scattered) sum += left;
     return sum * radiance / static_irradiance_range;
 }
 
@@ -53,7 +52,7 @@ float most_irradiance(const std::vector<NearLamp>& lamps) {
 
 }  // namespace
 
-float static_gain(const StaticLights& lights, const trace::Scene& scene, std::span<const placement::Position> probes, const Settings& settings) {
+float static_gain(const StaticLights& lights, float scattered, const trace::Scene& scene, std::span<const placement::Position> probes, const Settings& settings) {
     const auto within_reach = [&](const glm::vec3& place, float radius_m) {
         return std::ranges::any_of(probes, [&](const placement::Position& probe) { return glm::distance(placement::metres(probe), place) - radius_m <= settings.reach_m; });
     };
@@ -61,17 +60,17 @@ float static_gain(const StaticLights& lights, const trace::Scene& scene, std::sp
     for (const PointLight& lamp : lights.points()) {
         if (within_reach(lamp.position, 0)) lamps.push_back({lamp.position, brightest(lamp.intensity), std::max(scene.distance_to_surface(lamp.position, settings.reach_m), least_distance_m)});
     }
-    float reflected_light = most_irradiance(lamps) * reflected, emitted = 0;
-    for (const Sun& sun : lights.suns()) reflected_light += reflected * brightest(sun.irradiance);
+    float irradiance = most_irradiance(lamps), emitted = 0;
+    for (const Sun& sun : lights.suns()) irradiance += brightest(sun.irradiance);
     for (const EmissiveObject& emissive : lights.emissive()) {
         if (within_reach(emissive.centre, emissive.radius_m)) emitted = std::max(emitted, emissive.radiance);
     }
     // Emission is met at the end of the last ray too.
-    return of_path(reflected_light, settings.bounces) + of_path(emitted, settings.bounces + 1);
+    return of_path(irradiance * scattered * std::numbers::inv_pi_v<float>, scattered, settings.bounces) + of_path(emitted, scattered, settings.bounces + 1);
 }
 
 // Any point of a box is at least as far from each lamp as the box.
-float static_gain(const StaticLights& lights, std::span<const map::Bounds> boxes, const Settings& settings) {
+float static_gain(const StaticLights& lights, float scattered, std::span<const map::Bounds> boxes, const Settings& settings) {
     float most = 0;
     for (const map::Bounds& box : boxes) {
         float irradiance = 0;
@@ -82,7 +81,13 @@ float static_gain(const StaticLights& lights, std::span<const map::Bounds> boxes
         }
         most = std::max(most, irradiance);
     }
-    return of_path(reflected * most, settings.bounces);
+    return of_path(most * scattered * std::numbers::inv_pi_v<float>, scattered, settings.bounces);
+}
+
+// Each of its terms has at most so many surfaces in it.
+float static_gain(float gain, float scattered_before, float scattered_now, const Settings& settings) {
+    for (std::uint32_t bounce = 0; scattered_now > scattered_before && bounce < settings.bounces; ++bounce) gain *= scattered_now / scattered_before;
+    return gain;
 }
 
 }  // namespace drtv::bake

@@ -22,7 +22,7 @@ constexpr std::size_t kept_samples = 4;
 }  // namespace
 
 World::World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map, std::shared_ptr<trace::MeshShelf> shelf)
-    : geometry_(std::move(device), map, std::move(shelf)), lights_(map), scenes_(kept_scenes), placements_(kept_placements), samples_(kept_samples) {}
+    : geometry_(std::move(device), map, std::move(shelf)), lights_(map), most_scattered_(lights_.empty() ? trace::least_scattered : trace::most_scattered(*map)), scenes_(kept_scenes), placements_(kept_placements), samples_(kept_samples) {}
 
 tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map, std::shared_ptr<trace::MeshShelf> shelf) {
     constexpr std::size_t most_emissive = std::size_t{1} << 23;  // triangles: half a gigabyte

@@ -30,6 +30,7 @@ class World {
 
     [[nodiscard]] const map::Map& map() const { return *geometry_.map(); }
     [[nodiscard]] const StaticLights& lights() const { return lights_; }
+    [[nodiscard]] float most_scattered() const { return most_scattered_; }  // trace::most_scattered, where there are lights
     [[nodiscard]] const std::vector<InteriorVolume>& interiors() const { return interiors_; }
     // Of interiors that no file will hold; one sentence each.
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
@@ -65,6 +66,7 @@ class World {
 
     trace::MapGeometry geometry_;
     const StaticLights lights_;
+    const float most_scattered_;
     std::vector<map::SectorCoordinate> sectors_;  // with ground, sorted by (j, i)
     std::vector<placement::ClosedVolume> no_probes_;
     std::vector<InteriorVolume> interiors_;

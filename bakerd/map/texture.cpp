@@ -127,6 +127,16 @@ std::vector<AlphaRange> ranges_of_alpha(const Texture& texture) {
     return blocks;
 }
 
+template <class Counts>
+glm::vec3 brightest_where(const Texture& texture, Counts counts) {
+    std::array<std::uint8_t, 3> most{};
+    for (std::size_t n = 0; n < texture.rgba.size(); n += 4) {
+        if (!counts(texture.rgba[n + 3])) continue;
+        for (std::size_t k = 0; k < 3; ++k) most[k] = std::max(most[k], texture.rgba[n + k]);
+    }
+    return {linear_from_srgb[most[0]], linear_from_srgb[most[1]], linear_from_srgb[most[2]]};
+}
+
 // The four texels around a point, and how far it lies between them.
 struct Bilinear {
     std::uint32_t x0, x1, y0, y1;
@@ -231,12 +241,14 @@ AlphaRange alpha_range(const Texture& texture, glm::vec2 low, glm::vec2 high) {
 }
 
 glm::vec3 brightest(const Texture& texture) {
-    std::array<std::uint8_t, 3> most{};
-    for (std::size_t n = 0; n < texture.rgba.size(); n += 4) {
-        if (coverage_of(texture, texture.rgba[n + 3]) <= 0) continue;
-        for (std::size_t k = 0; k < 3; ++k) most[k] = std::max(most[k], texture.rgba[n + k]);
-    }
-    return {linear_from_srgb[most[0]], linear_from_srgb[most[1]], linear_from_srgb[most[2]]};
+    return brightest_where(texture, [&](std::uint8_t alpha) { return coverage_of(texture, alpha) > 0; });
+}
+
+glm::vec3 brightest_of_all(const Texture& texture) {
+    const glm::vec3 most = brightest_where(texture, [](std::uint8_t) { return true; });
+    // Mip levels round the little that is there next to nothing (sample_filtered).
+    constexpr float rounding = 1 / 63.0f;
+    return texture.coverage == Coverage::whole ? most : glm::min(most + rounding, glm::vec3(1));
 }
 
 glm::vec3 sample_filtered(const Texture& texture, glm::vec2 uv, std::uint32_t level) {

@@ -9,6 +9,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace drtv::trace {
 namespace {
@@ -42,6 +45,10 @@ glm::vec3 filtered(const map::Map& map, const map::TextureView& view, const std:
     const glm::vec2 at = corners[0] * (1 - u - v) + corners[1] * u + corners[2] * v;
     return map::sample_filtered(texture, at, mip_level(texture, corners, double_area_m2, footprint_m));
 }
+
+bool is_leaf(const map::Material& material, map::Role role) { return role == map::Role::vegetation && (material.double_sided || material.alpha_mode != map::AlphaMode::opaque); }
+
+float brightest(const glm::vec3& colour) { return std::max({colour.x, colour.y, colour.z}); }
 
 // In [0, 1), from the point's bits (finaliser of SplitMix64).
 float coin_at(std::uint32_t triangle, float u, float v) {
@@ -97,6 +104,41 @@ Presence presence_of(const map::Map& map, const map::Primitive& primitive, std::
     return high <= 0 ? Presence::nowhere : Presence::mixed;
 }
 
+float most_scattered(const map::Map& map) {
+    std::set<std::pair<std::uint32_t, bool>> seen;  // meshes, as vegetation or not
+    std::map<std::uint32_t, glm::vec3> of_textures;
+    float most = least_scattered;
+    for (const map::Object& object : map.objects) {
+        const bool vegetation = object.role == map::Role::vegetation;
+        if (!seen.insert({object.mesh, vegetation}).second) continue;
+        for (const map::Primitive& primitive : map.meshes[object.mesh].primitives) {
+            const map::Material& material = map.materials[primitive.material];
+            const auto scattered = [&](const glm::vec3& colour) {
+                const float albedo = std::min(brightest(colour), map::max_albedo);
+                if (material.transmission > 0) return albedo * (1 - material.transmission) + std::min(brightest(material.transmission_colour) * material.transmission, map::max_albedo);
+                return is_leaf(material, object.role) ? std::min(albedo * (1 + leaf_transmission), map::max_albedo) : albedo;
+            };
+            glm::vec3 colour(material.base_colour);
+            if (scattered(colour) <= most && primitive.colours.empty()) continue;
+            if (!primitive.colours.empty()) {
+                glm::vec3 largest(0);
+                for (const glm::vec4& vertex : primitive.colours) largest = glm::max(largest, glm::vec3(vertex));
+                colour *= largest;
+            }
+            // Textures are looked at only where they matter: their colours are 1 at most.
+            if (scattered(colour) <= most) continue;
+            if (material.base_texture.present()) {
+                const std::uint32_t texture = material.base_texture.texture;
+                const auto [entry, added] = of_textures.try_emplace(texture);
+                if (added) entry->second = map::brightest_of_all(map.textures[texture]);
+                colour *= entry->second;
+            }
+            most = std::max(most, scattered(colour));
+        }
+    }
+    return most;
+}
+
 glm::vec3 emission_at(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v, float double_area_m2, float footprint_m) {
     const map::Material& material = map.materials[primitive.material];
     if (!material.emission_texture.present()) return material.emission;
@@ -116,7 +158,7 @@ Surface surface_at(const map::Map& map, const map::Primitive& primitive, map::Ro
     if (material.transmission > 0) {
         surface.transmitted = material.transmission_colour * material.transmission;
         surface.albedo *= 1 - material.transmission;
-    } else if (role == map::Role::vegetation && (material.double_sided || material.alpha_mode != map::AlphaMode::opaque)) {
+    } else if (is_leaf(material, role)) {
         surface.transmitted = surface.albedo * leaf_transmission;
     }
     const glm::vec3 total = surface.albedo + surface.transmitted;

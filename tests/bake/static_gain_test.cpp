@@ -10,6 +10,8 @@
 namespace drtv::test {
 namespace {
 
+constexpr float albedo = 0.5f;
+
 struct LampsOverAPlane {
     std::shared_ptr<bake::World> world;
     std::shared_ptr<const trace::Scene> scene;
@@ -19,7 +21,7 @@ struct LampsOverAPlane {
     // Lamps of 683 cd (1 W/sr in the green that an eye sees best) so high above the plane.
     explicit LampsOverAPlane(const std::vector<glm::dvec3>& lamps) {
         GltfBuilder b;
-        b.add_node({.mesh = b.add_mesh(ground(100), b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}))});
+        b.add_node({.mesh = b.add_mesh(ground(100), b.add_material({.colour = {albedo, albedo, albedo, 1}}))});
         for (const glm::dvec3& lamp : lamps) b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 683}}), .translation = glm::dvec3(lamp.x, lamp.z, -lamp.y)});
         world = open_world(b);
         scene = world->scene_for({0, 0}, 200);
@@ -27,11 +29,11 @@ struct LampsOverAPlane {
         settings.reach_m = 80;
     }
 
-    [[nodiscard]] float gain() const { return bake::static_gain(world->lights(), *scene, probes, settings); }
-    // What a white surface radiates so near to one of the lamps, as a share of the range.
+    [[nodiscard]] float gain() const { return bake::static_gain(world->lights(), world->most_scattered(), *scene, probes, settings); }
+    // What the plane radiates so near to one of the lamps, as a share of the range.
     [[nodiscard]] float gain_at(float distance_m) const {
         const glm::vec3& intensity = world->lights().points()[0].intensity;
-        return map::max_albedo * std::numbers::inv_pi_v<float> * std::max({intensity.x, intensity.y, intensity.z}) / (distance_m * distance_m) / bake::static_irradiance_range;
+        return albedo * std::numbers::inv_pi_v<float> * std::max({intensity.x, intensity.y, intensity.z}) / (distance_m * distance_m) / bake::static_irradiance_range;
     }
 };
 
@@ -57,12 +59,20 @@ TEST(StaticGain, AllBouncesCount) {
     LampsOverAPlane lamp({{5, 5, 1}});
     const float once = lamp.gain();
     lamp.settings.bounces = 3;
-    EXPECT_FLOAT_EQ(lamp.gain(), once * (1 + map::max_albedo + map::max_albedo * map::max_albedo));
+    EXPECT_FLOAT_EQ(lamp.gain(), once * (1 + albedo + albedo * albedo));
+}
+
+TEST(StaticGain, GrowsWithTheSurfaces) {
+    bake::Settings settings;
+    settings.bounces = 2;
+    EXPECT_EQ(bake::static_gain(3, 0.5f, 0.5f, settings), 3);
+    EXPECT_EQ(bake::static_gain(3, 0.5f, 0.2f, settings), 3);
+    EXPECT_FLOAT_EQ(bake::static_gain(3, 0.5f, 0.75f, settings), 3 * 1.5f * 1.5f);
 }
 
 TEST(StaticGain, OfBoxesIsByTheirDistance) {
     const LampsOverAPlane lamp({{5, 5, 4}});
-    const auto of_box = [&](const map::Bounds& box) { return bake::static_gain(lamp.world->lights(), std::vector{box}, lamp.settings); };
+    const auto of_box = [&](const map::Bounds& box) { return bake::static_gain(lamp.world->lights(), lamp.world->most_scattered(), std::vector{box}, lamp.settings); };
     EXPECT_FLOAT_EQ(of_box({{7, 4, 3}, {8, 6, 5}}), lamp.gain_at(2));
     EXPECT_EQ(of_box({{500, 500, 0}, {501, 501, 1}}), 0);
     // Around the lamp: more than any tolerance, and a number.

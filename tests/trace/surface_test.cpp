@@ -110,6 +110,61 @@ TEST(Leaves, BrightOnesStayWithinTheLimit) {
     expect_near(surface.transmitted, glm::vec3(0.95f / 3), rounding);
 }
 
+// Whatever a surface is made of, what a path takes on from it is within the map's bound.
+TEST(MostScattered, NoSurfaceScattersMore) {
+    std::mt19937 random(2);
+    const auto colour = [&](float most) { return glm::vec3(between(random, 0, most), between(random, 0, most), between(random, 0, most)); };
+    int close = 0;
+    for (int n = 0; n < 1500; ++n) {
+        Skin skin(colour(1));
+        map::Material& material = skin.material();
+        material.double_sided = random() % 2 == 0;
+        material.alpha_mode = static_cast<AlphaMode>(random() % 3);
+        if (n % 3 == 0) material.transmission = n % 6 == 0 ? 1 : between(random, 0, 1);
+        material.transmission_colour = colour(1);
+        if (n % 4 == 0) skin.primitive.colours = {glm::vec4(colour(1.5f), 1), glm::vec4(colour(1), 1), glm::vec4(colour(0.5f), 1)};
+        if (n % 5 < 3) {
+            map::Texture picture;
+            picture.width = picture.height = 5;
+            picture.coverage = static_cast<map::Coverage>(n % 5);
+            picture.cutoff = 0.5f;
+            const auto brightest = static_cast<unsigned>(50 + random() % 200);
+            for (unsigned k = 0; k < 25 * 4; ++k) picture.rgba.push_back(static_cast<std::uint8_t>(k % 4 == 3 ? random() % 2 * 3 : random() % brightest));
+            map::prefilter(picture);
+            skin.map.textures.push_back(picture);
+            material.base_texture.texture = 0;
+            skin.primitive.uvs = {{0, 0}, {1, 0}, {0, 1}};
+        }
+        map::Object object;
+        object.role = n % 2 == 0 ? Role::fixed : Role::vegetation;
+        skin.map.objects.push_back(object);
+        skin.map.meshes.emplace_back().primitives.push_back(skin.primitive);
+        const float most = trace::most_scattered(skin.map);
+        EXPECT_LE(most, 2 * map::max_albedo);
+        float seen = 0;
+        for (int k = 0; k < 40; ++k) {
+            const float u = k < 3 ? static_cast<float>(k == 1) : between(random, 0, 0.5f), v = k < 3 ? static_cast<float>(k == 2) : between(random, 0, 0.5f);
+            const Surface surface = trace::surface_at(skin.map, skin.primitive, object.role, 0, u, v, true, 100, k % 2 == 0 ? 0 : between(random, 0, 30));
+            seen = std::max(seen, std::max({surface.albedo.x, surface.albedo.y, surface.albedo.z}) + std::max({surface.transmitted.x, surface.transmitted.y, surface.transmitted.z}));
+        }
+        EXPECT_LE(seen, most + rounding) << n;
+        close += seen > most * 0.99f ? 1 : 0;
+    }
+    EXPECT_GT(close, 300);
+}
+
+TEST(MostScattered, IsOfTheBrightestThatIsThere) {
+    Skin skin(glm::vec3(0.5f));
+    EXPECT_EQ(trace::most_scattered(skin.map), trace::least_scattered);
+    skin.map.meshes.emplace_back().primitives.push_back(skin.primitive);
+    EXPECT_EQ(trace::most_scattered(skin.map), trace::least_scattered);  // no object wears it
+    skin.map.objects.emplace_back();
+    EXPECT_EQ(trace::most_scattered(skin.map), 0.5f);
+    skin.material().double_sided = true;
+    skin.map.objects.emplace_back().role = Role::vegetation;
+    EXPECT_EQ(trace::most_scattered(skin.map), 0.75f);
+}
+
 TEST(SurfaceEmission, OfTheBackIsNoneUnlessDoubleSided) {
     const glm::vec3 red(5, 0, 0), none(0);
     Skin skin;
