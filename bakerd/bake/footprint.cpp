@@ -5,9 +5,10 @@
 #include <drtv/sector.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
+#include <numbers>
 
 namespace drtv::bake {
 namespace {
@@ -19,7 +20,9 @@ constexpr std::int32_t most_columns = 80, most_layers = 48;
 // New things may stand as much higher than all others before they are beyond the grid.
 constexpr float headroom_m = 16;
 
-constexpr int least_weight_exponent = -14;
+constexpr float half_octave = std::numbers::sqrt2_v<float>;
+constexpr std::array<float, most_weight_code - 1> weight_levels = {0x1p-12f, 0x1p-12f * half_octave, 0x1p-11f, 0x1p-11f * half_octave, 0x1p-10f, 0x1p-10f * half_octave, 0x1p-9f,
+                                                                   0x1p-9f * half_octave, 0x1p-8f, 0x1p-7f, 0x1p-6f, 0x1p-5f, 0x1p-4f, 0x1p-3f};
 
 constexpr std::uint64_t magic = 0x50'46'56'54'52'44;  // "DRTVFP"
 constexpr std::uint32_t most_rays = 1u << 16;
@@ -180,19 +183,18 @@ std::size_t quarter_of(map::SectorCoordinate sector, const placement::Position& 
 
 std::uint8_t weight_code(float weight) {
     if (!(weight > 0)) return 0;
-    // The exponent, rounded up: 2^-14 is 1.
-    const std::uint32_t bits = std::bit_cast<std::uint32_t>(weight) + 0x7FFFFF;
-    const std::int32_t code = static_cast<std::int32_t>(bits >> 23) - (127 + least_weight_exponent) + 1;
-    return static_cast<std::uint8_t>(std::clamp<std::int32_t>(code, 1, most_weight_code));
+    return static_cast<std::uint8_t>(std::ranges::lower_bound(weight_levels, weight) - weight_levels.begin() + 1);
 }
 
 float weight_of_code(std::uint8_t code) {
     if (code == 0) return 0;
-    if (code >= most_weight_code) return 1;
-    return std::bit_cast<float>(static_cast<std::uint32_t>(code - 1 + 127 + least_weight_exponent) << 23);
+    return code < most_weight_code ? weight_levels[std::size_t{code} - 1] : 1;
 }
 
-std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
+namespace {
+
+// Weights below a code count as that.
+std::vector<std::uint8_t> encode_with(const Footprint& footprint, std::uint8_t least_code) {
     StoredWriter writer;
     writer.add(magic);
     writer.add(footprint_version);
@@ -211,11 +213,22 @@ std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
     }
     std::vector<std::uint8_t> weights;
     for (const std::size_t block : crossed_blocks(footprint)) {
-        for (std::size_t quarter = 0; quarter < quarter_count; ++quarter) weights.push_back(footprint.weight(block, quarter));
+        for (std::size_t quarter = 0; quarter < quarter_count; ++quarter) {
+            const std::uint8_t code = footprint.weight(block, quarter);
+            weights.push_back(code == 0 ? code : std::max(code, least_code));
+        }
     }
     writer.add_all(in_pairs(weights));
     add_records(writer, footprint.solid_tests);
     return writer.compressed();
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
+    std::vector<std::uint8_t> bytes = encode_with(footprint, 1);
+    for (std::uint8_t least = 2; bytes.size() > most_record_bytes && least < most_weight_code; ++least) bytes = encode_with(footprint, least);
+    return bytes;
 }
 
 std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {

@@ -47,7 +47,8 @@ inline constexpr std::size_t quarter_count = 4;
 // Layers of a column, one bit each from the lowest, from one to another, both counted.
 [[nodiscard]] constexpr std::uint64_t layers_between(std::int32_t low, std::int32_t high) { return (~std::uint64_t{0} >> (63 - (high - low))) << low; }
 
-// A weight in four bits, rounded up to a power of two: 0 means never crossed, 15 more than can be told.
+// A weight in four bits, rounded up: 0 means never crossed, then from 2^-12 by half powers of two to 2^-8, where tolerances lie, and by whole ones to 2^-3; 15 is more
+// than can be told.
 inline constexpr std::uint8_t most_weight_code = 15;
 [[nodiscard]] std::uint8_t weight_code(float weight);
 [[nodiscard]] float weight_of_code(std::uint8_t code);
@@ -109,6 +110,8 @@ struct Footprint {
     [[nodiscard]] std::uint8_t weight(std::size_t block, std::size_t quarter) const { return weights[block * quarter_count + quarter]; }
 };
 
+// What is stored of it; where it would be larger than this, its smallest weights are raised until it is not, if that can be.
+inline constexpr std::size_t most_record_bytes = std::size_t{16} << 10;
 [[nodiscard]] std::vector<std::uint8_t> encode_footprint(const Footprint& footprint);
 // Nothing when the bytes are not such.
 [[nodiscard]] std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes);

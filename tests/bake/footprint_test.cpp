@@ -13,7 +13,7 @@
 namespace drtv::test {
 namespace {
 
-TEST(WeightCode, RoundsUpByAtMostHalfAnOctave) {
+TEST(WeightCode, RoundsUpFinelyWhereTolerancesLie) {
     EXPECT_EQ(bake::weight_code(0), 0);
     EXPECT_EQ(bake::weight_of_code(0), 0.0f);
     std::uint8_t before = 0;
@@ -24,8 +24,8 @@ TEST(WeightCode, RoundsUpByAtMostHalfAnOctave) {
         if (weight <= 1) {
             EXPECT_GE(bake::weight_of_code(code), weight);
         }
-        if (weight >= 0x1p-14f && code < bake::most_weight_code) {
-            EXPECT_LE(bake::weight_of_code(code), weight * 2.01f);
+        if (weight >= 0x1p-12f && code < bake::most_weight_code) {
+            EXPECT_LE(bake::weight_of_code(code), weight * (weight <= 0x1p-8f ? 1.42f : 2.01f));
         }
         before = code;
     }
@@ -192,6 +192,28 @@ TEST(Footprint, ComesBackAsItWasStored) {
     const auto back = bake::decode_footprint(bake::encode_footprint(footprint));
     ASSERT_TRUE(back);
     EXPECT_EQ(*back, footprint);
+}
+
+TEST(Footprint, SmallWeightsAreRaisedWhereTheRecordWouldBeTooLarge) {
+    bake::Footprint footprint = baked_footprint();
+    std::mt19937 random(11);
+    footprint.grid = bake::footprint_grid({0, 0}, 500, 0, 120);
+    footprint.crossed.assign(footprint.grid.column_count(), bake::layers_between(0, footprint.grid.layers - 1));
+    footprint.weights.resize(footprint.grid.block_count() * bake::quarter_count);
+    std::geometric_distribution<int> code(0.3);
+    for (std::uint8_t& weight : footprint.weights) weight = static_cast<std::uint8_t>(std::min(code(random), 15));
+    const std::vector<std::uint8_t> bytes = bake::encode_footprint(footprint);
+    EXPECT_LE(bytes.size(), bake::most_record_bytes);
+    EXPECT_GT(bytes.size(), bake::most_record_bytes * 3 / 4);
+    const auto back = bake::decode_footprint(bytes);
+    ASSERT_TRUE(back);
+    // All but the smallest are as they were.
+    std::uint8_t least = 15;
+    for (std::size_t n = 0; n < back->weights.size(); ++n) least = back->weights[n] == 0 ? least : std::min(least, back->weights[n]);
+    EXPECT_GT(least, 1);
+    bake::Footprint raised = footprint;
+    for (std::uint8_t& weight : raised.weights) weight = weight == 0 ? weight : std::max(weight, least);
+    EXPECT_EQ(*back, raised);
 }
 
 TEST(Footprint, OddBytesAreNoRecord) {
