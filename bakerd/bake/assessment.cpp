@@ -1,6 +1,7 @@
 #include "bakerd/bake/assessment.h"
 
 #include "bakerd/bake/integrate.h"
+#include "bakerd/bake/path.h"
 #include "bakerd/bake/static_gain.h"
 
 #include <drtv/conventions.h>
@@ -141,8 +142,9 @@ class FirstRays {
                 float enter = std::numeric_limits<float>::infinity();
                 for (const Bounds& box : boxes) enter = std::min(enter, entry_distance(probe.place, direction, box));
                 if (!(enter <= footprint_.reach_m)) continue;
-                // What stops the ray before the boxes is in both maps.
-                if (enter > 0 && scene_.closest({probe.place, direction, enter})) continue;
+                // What stops the ray before the boxes is in both maps; where it is let through, so is all that it was asked for just behind.
+                const trace::Ray ray{probe.place, direction, enter};
+                if (const auto hit = enter > 0 ? scene_.closest(ray) : std::nullopt; hit && end_of_beyond_surface(ray, *hit) < enter) continue;
                 // Sky visibility is a mean over the upper half alone: so much more does a ray of it count there.
                 constexpr float upper_gain = 1.26794919f;
                 for (std::size_t b = 0; b < basis_count; ++b) {
@@ -191,7 +193,8 @@ class Assessor {
         for (const Change& change : changes) std::ranges::copy(boxes_of(change), std::back_inserter(boxes));
         std::erase_if(boxes, [&](const Bounds& box) { return !within_reach({&box, 1}); });
         const float before = footprint_.most_scattered, now = std::max(before, world_.most_scattered());
-        assessment_.gain = std::max(1.0f, static_gain(footprint_.static_gain, before, now, settings_) + static_gain(world_.lights(), now, boxes, settings_));
+        assessment_.static_gain = raised_gain(footprint_.static_gain, before, now, settings_) + static_gain(world_.lights(), now, boxes, settings_);
+        assessment_.gain = std::max(1.0f, assessment_.static_gain);
         for (const ProbeRecord& probe : footprint_.probes) assessment_.probe_bounds.push_back(probe.share * assessment_.gain);
         for (std::size_t n = 0; n < changes.size() && !settled(); ++n) {
             const auto [weight, cause] = weigh(changes[n]);

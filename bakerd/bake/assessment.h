@@ -37,7 +37,8 @@ struct Assessment {
     bool placement_holds = true;
     std::vector<std::uint8_t> flips;
     std::vector<float> probe_bounds;
-    float gain = 1;  // of a path's weight, in all bounds (Footprint::gain)
+    float gain = 1;         // of a path's weight, in all bounds (Footprint::gain)
+    float static_gain = 0;  // of static light alone (Footprint::static_gain)
     // Of the change that weighs most; nothing of a hit.
     std::optional<std::size_t> change;  // index
     Cause cause = Cause::rays;

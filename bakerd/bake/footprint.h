@@ -110,7 +110,7 @@ struct Footprint {
     [[nodiscard]] std::uint8_t weight(std::size_t block, std::size_t quarter) const { return weights[block * quarter_count + quarter]; }
 };
 
-// What is stored of it; where it would be larger than this, its smallest weights are raised until it is not, if that can be.
+// What is stored of it; where it would be larger than this, its smallest weights are raised until it is not, if they can make it so.
 inline constexpr std::size_t most_record_bytes = std::size_t{16} << 10;
 [[nodiscard]] std::vector<std::uint8_t> encode_footprint(const Footprint& footprint);
 // Nothing when the bytes are not such.

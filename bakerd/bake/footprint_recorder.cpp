@@ -95,6 +95,8 @@ std::span<const std::int32_t> FootprintRecorder::cross(const trace::Ray& ray, fl
     const glm::vec3 scale(per_side, per_side, per_height), origin = (ray.origin - low) * scale, direction = ray.direction * scale;
     const float step = static_cast<float>(grid_.cell_m) * (1 - 0x1p-7f), top = static_cast<float>(grid_.layers) - 0.5f;
     constexpr std::int32_t width = 8;
+    // A whole number of steps: all distances are exact then, and a point is the same from both sides.
+    from = std::floor(from / step) * step;
     const auto count = static_cast<std::int32_t>((to - from) / step) + 2;
     const auto points = static_cast<std::size_t>(count + width);
     // Of each point seven blocks and two corners at most.

@@ -22,7 +22,7 @@ class FootprintRecorder {
     void begin(std::size_t quarter);
 
     // A part of the path of that number, as far as `length_m`: a change anywhere on it changes what the path brings by at most `share` of a coefficient. Of
-    // a path's parts the first through a block counts alone: later ones must not weigh more.
+    // a path's parts the first through a block counts alone: later ones weigh less (trace::most_scattered).
     void path(const trace::Ray& ray, float length_m, float share, std::uint32_t number);
 
     // A ray whose share is its own, as that to a light.

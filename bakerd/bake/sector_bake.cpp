@@ -274,12 +274,10 @@ tl::expected<BakedSector, std::string> bake_sector(World& world, map::SectorCoor
     footprint.reach_m = settings.reach_m;
     footprint.rays = settings.rays;
     footprint.without_bounds = settings.local_transfer || settings.error > 0;
-    footprint.static_gain = static_gain(world.lights(), world.most_scattered(), *scene, positions, settings);
-    footprint.most_scattered = world.most_scattered();
-    if (std::ranges::any_of(lights, [](const BakedProbe& light) { return light.record.share > 0; })) {
-        footprint.static_gain = std::max(footprint.static_gain, earlier->assessment.gain);
-        footprint.most_scattered = std::max(footprint.most_scattered, earlier->footprint.most_scattered);
-    }
+    const bool near = std::ranges::any_of(lights, [](const BakedProbe& light) { return light.record.share > 0; });
+    footprint.most_scattered = near ? std::max(world.most_scattered(), earlier->footprint.most_scattered) : world.most_scattered();
+    footprint.static_gain = static_gain(world.lights(), footprint.most_scattered, *scene, positions, settings);
+    if (near) footprint.static_gain = std::max(footprint.static_gain, earlier->assessment.static_gain);
     footprint.placement_m = placement_margin_m(settings);
     footprint.min_distance_m = settings.min_distance_m;
     for (const BakedProbe& light : lights) footprint.probes.push_back(light.record);

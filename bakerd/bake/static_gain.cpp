@@ -85,7 +85,7 @@ float static_gain(const StaticLights& lights, float scattered, std::span<const m
 }
 
 // Each of its terms has at most so many surfaces in it.
-float static_gain(float gain, float scattered_before, float scattered_now, const Settings& settings) {
+float raised_gain(float gain, float scattered_before, float scattered_now, const Settings& settings) {
     for (std::uint32_t bounce = 0; scattered_now > scattered_before && bounce < settings.bounces; ++bounce) gain *= scattered_now / scattered_before;
     return gain;
 }

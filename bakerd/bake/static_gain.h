@@ -19,7 +19,7 @@ namespace drtv::bake {
 // The same of surfaces anywhere in the boxes, and of lamps alone.
 [[nodiscard]] float static_gain(const StaticLights& lights, float scattered, std::span<const map::Bounds> boxes, const Settings& settings);
 
-// The first of these where surfaces are brighter than they were.
-[[nodiscard]] float static_gain(float gain, float scattered_before, float scattered_now, const Settings& settings);
+// A gain that was found for surfaces of `scattered_before`, where there are brighter ones now.
+[[nodiscard]] float raised_gain(float gain, float scattered_before, float scattered_now, const Settings& settings);
 
 }  // namespace drtv::bake

@@ -34,7 +34,7 @@ Digest task_key(const Digest& content, const bake::Settings& settings, map::Sect
     map::Hasher hasher;
     hasher.add_sized(std::string_view("drtv task"));
     hasher.add(content);
-    hasher.add(bake::settings_key(settings));
+    hasher.add(bake::results_key(settings));
     hasher.add(sector.i);
     hasher.add(sector.j);
     if (settings.tolerance > 0) hasher.add(settings.tolerance);

@@ -24,7 +24,7 @@ inline constexpr std::uint32_t alpha_block_texels = 8;  // along each side
 // The largest linear colour of any texel that is there at all.
 [[nodiscard]] glm::vec3 brightest(const Texture& texture);
 
-// The largest of any texel: no sample is brighter, of whatever level.
+// The largest of any texel: no sample is brighter, of whatever level, but for the last digit.
 [[nodiscard]] glm::vec3 brightest_of_all(const Texture& texture);
 
 // Bilinear sample at uv of the mip level, at most the last one: the mean linear colour of what is there, as wide as

@@ -38,8 +38,8 @@ enum class Presence : std::uint8_t { nowhere, mixed, whole };
 [[nodiscard]] Surface surface_at(const map::Map& map, const map::Primitive& primitive, map::Role role, std::uint32_t triangle, float u, float v, bool front, float double_area_m2,
                                  float footprint_m);
 
-// On the share of light that any surface of the map's objects passes on, to both sides together and in whichever channels are most: no step of a path
-// (bake::scatter) multiplies what it brings by more. 1.9 at most, and never 0: of a black map least_scattered.
+// A bound on the share of light that any surface of the map's objects passes on, to both sides together and in whichever channels are most: no step of a path
+// (bake::scatter) multiplies what it brings by more. Below 1, and never 0: of a black map least_scattered.
 inline constexpr float least_scattered = 1 / 16.0f;
 [[nodiscard]] float most_scattered(const map::Map& map);
 

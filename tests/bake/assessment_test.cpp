@@ -239,6 +239,30 @@ TEST(EarlierBake, RaysOfSolidTestsAreUsedUp) {
     EXPECT_EQ(std::ranges::count(tests, before), 0);
 }
 
+// What is taken over may have been seen among brighter surfaces, and what is new shines on those when they come back.
+TEST(EarlierBake, TheGainIsOfTheBrighterMap) {
+    const trace::FloatMode float_mode;
+    const Yard yard(3, true);
+    bake::Settings settings = settings_of_yard(32, false);
+    settings.tolerance = 1 / 512.0f;
+    const auto world = open_world(yard.build());
+    const bake::BakedSector was = bake::bake_sector(*world, {0, 0}, settings).value();
+    ASSERT_GT(was.footprint.static_gain, 0);
+    bake::EarlierBake earlier{was.sector, was.footprint, bake::assess(was.footprint, settings, {}, settings.tolerance, *world)};
+    earlier.assessment.static_gain = 0;
+    const auto footprint = [&] { return bake::bake_sector(*world, {0, 0}, settings, &earlier).value().footprint; };
+    earlier.footprint.most_scattered = 2 * was.footprint.most_scattered;
+    // As it was, exactly: nothing is left of the map before.
+    EXPECT_EQ(footprint().static_gain, was.footprint.static_gain);
+    EXPECT_EQ(footprint().most_scattered, was.footprint.most_scattered);
+    earlier.assessment.probe_bounds[0] = 0.001f;
+    EXPECT_GE(footprint().static_gain, 2 * was.footprint.static_gain);
+    EXPECT_LE(footprint().static_gain, 16 * was.footprint.static_gain);
+    EXPECT_EQ(footprint().most_scattered, 2 * was.footprint.most_scattered);
+    earlier.assessment.static_gain = 100 * was.footprint.static_gain;
+    EXPECT_EQ(footprint().static_gain, 100 * was.footprint.static_gain);
+}
+
 // An earlier bake that does not belong to the sector's map is of no use, and does no harm.
 TEST(EarlierBake, OfOtherHeightsOrOfAnotherFileIsNotUsed) {
     const trace::FloatMode float_mode;

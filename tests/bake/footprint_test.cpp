@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 namespace drtv::test {
 namespace {
@@ -44,44 +45,49 @@ TEST(FootprintGrid, CoversTheDistanceAndTheHeights) {
             EXPECT_GT(grid.high().z, top_m);
             EXPECT_LE(grid.layers, 64);
             EXPECT_LE(grid.columns, 80);
+            EXPECT_GE(2 * grid.layer_m, grid.cell_m);  // the recorder's points rise by one block at most
         }
     }
 }
 
-// Whatever point of a ray is asked for, its cell is marked.
+// Whatever point of a ray is asked for, its cell is marked, and its block has the ray's weight, once. Rays as long as the grid goes, from below and above it too.
 TEST(FootprintRecorder, NoPointOfARayIsMissing) {
     std::mt19937 random(5);
-    std::uniform_real_distribution<float> place(-100, 160), height(-30, 60), along(0, 1), sphere(-1, 1);
-    const bake::FootprintGrid grid = bake::footprint_grid({0, 0}, 200, -10, 40);
-    const float rounding_m = 0.01f;
-    for (int n = 0; n < 300; ++n) {
-        bake::FootprintRecorders recorders(grid);
-        bake::FootprintRecorder& recorder = recorders.of_this_thread();
-        const auto quarter = static_cast<std::size_t>(n) % bake::quarter_count;
-        recorder.begin(quarter);
-        glm::vec3 direction(sphere(random), sphere(random), n % 3 == 0 ? 0.0f : sphere(random));
-        if (n % 7 == 0) direction = {0, 0, 1};
-        if (glm::length(direction) < 0.1f) continue;
-        const trace::Ray ray{{place(random), place(random), height(random)}, glm::normalize(direction), 90};
-        if (n % 2 == 0) recorder.path(ray, ray.far_m, 0.01f, 3);
-        else recorder.lone(ray, 0.01f);
-        bake::Footprint footprint;
-        recorders.store(footprint);
-        for (int k = 0; k < 200; ++k) {
-            const glm::vec3 point = ray.origin + ray.direction * (ray.far_m * along(random));
-            if (point.z <= grid.low().z + 0.01f || point.z >= grid.high().z - 0.01f) continue;
-            bool marked = false;
-            for (const float dx : {-rounding_m, 0.0f, rounding_m}) {
-                for (const float dy : {-rounding_m, 0.0f, rounding_m}) {
-                    for (const float dz : {-0.01f, 0.01f}) {
-                        const glm::ivec3 cell(glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
-                        if (cell.x < 0 || cell.y < 0 || cell.z < 0 || cell.x >= grid.columns || cell.y >= grid.rows || cell.z >= grid.layers) continue;
-                        const bool crossed = (footprint.crossed[grid.column(cell.x, cell.y)] >> cell.z & 1u) != 0;
-                        marked |= crossed && footprint.weight(grid.block(cell.x, cell.y, cell.z), quarter) == bake::weight_code(0.01f);
+    for (const auto& [distance_m, length_m, top_m] : {std::tuple(200.0f, 90.0f, 40.0f), std::tuple(560.0f, 390.0f, 120.0f), std::tuple(1100.0f, 930.0f, 300.0f), std::tuple(2500.0f, 2330.0f, 90.0f)}) {
+        const bake::FootprintGrid grid = bake::footprint_grid({0, 0}, distance_m, -10, top_m);
+        std::uniform_real_distribution<float> place(-100, 160), height(grid.low().z - 20, grid.high().z + 20), along(0, 1), sphere(-1, 1);
+        // Of distances; those of places are far smaller.
+        const float rounding_m = 0.01f + length_m * 0x1p-18f;
+        for (int n = 0; n < 400; ++n) {
+            bake::FootprintRecorders recorders(grid);
+            bake::FootprintRecorder& recorder = recorders.of_this_thread();
+            const auto quarter = static_cast<std::size_t>(n) % bake::quarter_count;
+            recorder.begin(quarter);
+            glm::vec3 direction(sphere(random), sphere(random), n % 3 == 0 ? 0.0f : sphere(random) * (n % 2 == 0 ? 1.0f : 0.2f));
+            if (n % 7 == 0) direction = {0, 0, 1};
+            if (n % 11 == 0) direction.x = 0;
+            if (glm::length(direction) < 0.1f) continue;
+            const trace::Ray ray{{place(random), place(random), height(random)}, glm::normalize(direction), length_m};
+            if (n % 2 == 0) recorder.path(ray, ray.far_m, 0.01f, 3);
+            else recorder.lone(ray, 0.01f);
+            bake::Footprint footprint;
+            recorders.store(footprint);
+            for (int k = 0; k < 300; ++k) {
+                const glm::vec3 point = ray.origin + ray.direction * (ray.far_m * along(random));
+                if (point.z <= grid.low().z + 0.1f || point.z >= grid.high().z - 0.1f) continue;
+                bool marked = false;
+                for (const float dx : {-rounding_m, 0.0f, rounding_m}) {
+                    for (const float dy : {-rounding_m, 0.0f, rounding_m}) {
+                        for (const float dz : {-rounding_m, 0.0f, rounding_m}) {
+                            const glm::ivec3 cell(glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
+                            if (cell.x < 0 || cell.y < 0 || cell.z < 0 || cell.x >= grid.columns || cell.y >= grid.rows || cell.z >= grid.layers) continue;
+                            const bool crossed = (footprint.crossed[grid.column(cell.x, cell.y)] >> cell.z & 1u) != 0;
+                            marked |= crossed && footprint.weight(grid.block(cell.x, cell.y, cell.z), quarter) == bake::weight_code(0.01f);
+                        }
                     }
                 }
+                EXPECT_TRUE(marked) << "ray " << n << " at " << point.x << " " << point.y << " " << point.z;
             }
-            EXPECT_TRUE(marked) << "ray " << n << " at " << point.x << " " << point.y << " " << point.z;
         }
     }
 }
@@ -214,6 +220,20 @@ TEST(Footprint, SmallWeightsAreRaisedWhereTheRecordWouldBeTooLarge) {
     bake::Footprint raised = footprint;
     for (std::uint8_t& weight : raised.weights) weight = weight == 0 ? weight : std::max(weight, least);
     EXPECT_EQ(*back, raised);
+}
+
+TEST(Footprint, WeightsStayWhereRaisingThemIsOfNoUse) {
+    bake::Footprint footprint = baked_footprint();
+    std::mt19937 random(12);
+    footprint.grid = bake::footprint_grid({0, 0}, 500, 0, 120);
+    footprint.crossed.resize(footprint.grid.column_count());
+    for (std::uint64_t& column : footprint.crossed) column = random() & bake::layers_between(0, footprint.grid.layers - 1);
+    footprint.weights.assign(footprint.grid.block_count() * bake::quarter_count, 0);
+    for (bake::SolidTest test; footprint.solid_tests.size() < 3000; footprint.solid_tests.push_back(test)) test.position = placement::Position(random(), random(), random());
+    for (std::uint8_t& weight : footprint.weights) weight = static_cast<std::uint8_t>(1 + random() % 2);
+    const std::vector<std::uint8_t> bytes = bake::encode_footprint(footprint);
+    EXPECT_GT(bytes.size(), bake::most_record_bytes);
+    EXPECT_GT(std::ranges::count(bake::decode_footprint(bytes).value().weights, 1), 0);
 }
 
 TEST(Footprint, OddBytesAreNoRecord) {

@@ -65,9 +65,9 @@ TEST(StaticGain, AllBouncesCount) {
 TEST(StaticGain, GrowsWithTheSurfaces) {
     bake::Settings settings;
     settings.bounces = 2;
-    EXPECT_EQ(bake::static_gain(3, 0.5f, 0.5f, settings), 3);
-    EXPECT_EQ(bake::static_gain(3, 0.5f, 0.2f, settings), 3);
-    EXPECT_FLOAT_EQ(bake::static_gain(3, 0.5f, 0.75f, settings), 3 * 1.5f * 1.5f);
+    EXPECT_EQ(bake::raised_gain(3, 0.5f, 0.5f, settings), 3);
+    EXPECT_EQ(bake::raised_gain(3, 0.5f, 0.2f, settings), 3);
+    EXPECT_FLOAT_EQ(bake::raised_gain(3, 0.5f, 0.75f, settings), 3 * 1.5f * 1.5f);
 }
 
 TEST(StaticGain, OfBoxesIsByTheirDistance) {
