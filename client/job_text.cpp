@@ -58,7 +58,7 @@ std::string reused_text(const v1::Job& job) {
     std::string text;
     if (job.sectors_cached() > 0) text += fmt::format(", {} of them from the cache", with_thousands(job.sectors_cached()));
     if (job.sectors_near() > 0) text += fmt::format(", {} nearly the same", with_thousands(job.sectors_near()));
-    if (job.largest_bound() > 0) text += fmt::format(" (at most {:.2g} % off)", job.largest_bound() * 100);
+    if (job.largest_bound() > 0) text += fmt::format(", all within {:.2g} % of an exact bake", job.largest_bound() * 100);
     return text;
 }
 

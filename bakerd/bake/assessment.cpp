@@ -403,7 +403,7 @@ float share_to_bake(const Assessment& assessment, float tolerance) {
 }
 
 std::string describe(const Assessment& assessment, std::span<const Change> changes) {
-    if (!assessment.change) return assessment.verdict == Verdict::rebake ? "it is exact only within a tolerance" : "";
+    if (!assessment.change) return assessment.verdict == Verdict::rebake ? "what is kept of it may be off by more than is asked" : "";
     const Change& change = changes[*assessment.change];
     const auto how = [&]() -> std::string {
         switch (assessment.cause) {
