@@ -119,7 +119,6 @@ float most_scattered(const map::Map& map) {
                 return is_leaf(material, object.role) ? std::min(albedo * (1 + leaf_transmission), map::max_albedo) : albedo;
             };
             glm::vec3 colour(material.base_colour);
-            if (scattered(colour) <= most && primitive.colours.empty()) continue;
             if (!primitive.colours.empty()) {
                 glm::vec3 largest(0);
                 for (const glm::vec4& vertex : primitive.colours) largest = glm::max(largest, glm::vec3(vertex));

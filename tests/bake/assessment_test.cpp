@@ -178,7 +178,7 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
     };
     std::map<map::SectorCoordinate, State> states;
     std::size_t taken_over = 0, baked_again = 0, off = 0;
-    for (int n = 0; n < 6; ++n) {
+    for (int n = 0; n < 8; ++n) {
         const std::string what = "seed " + std::to_string(GetParam()) + ", " + std::to_string(n) + ": " + (n == 0 ? "" : edit(yard, random));
         const auto world = open_world(yard.build());
         const bake::Inventory inventory = bake::take_inventory(*world);
