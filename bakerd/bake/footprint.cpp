@@ -227,13 +227,10 @@ std::vector<std::uint8_t> encode_with(const Footprint& footprint, std::uint8_t l
 
 std::vector<std::uint8_t> encode_footprint(const Footprint& footprint) {
     const auto fits = [](const std::vector<std::uint8_t>& bytes) { return bytes.size() <= most_record_bytes; };
-    std::vector<std::uint8_t> whole = encode_with(footprint, 1);
-    if (fits(whole) || !fits(encode_with(footprint, most_weight_code))) return whole;
-    for (std::uint8_t least = 2; least < most_weight_code; ++least) {
-        std::vector<std::uint8_t> raised = encode_with(footprint, least);
-        if (fits(raised)) return raised;
-    }
-    return encode_with(footprint, most_weight_code);
+    std::vector<std::uint8_t> bytes = encode_with(footprint, 1);
+    if (fits(bytes) || !fits(encode_with(footprint, most_weight_code))) return bytes;
+    for (std::uint8_t least = 2; !fits(bytes); ++least) bytes = encode_with(footprint, least);
+    return bytes;
 }
 
 std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
