@@ -1,6 +1,6 @@
 // Speaks the worker's protocol. `argv[1]` is how it behaves as a whole, a sector's `i` how it treats the request:
 //
-//     fake_worker normal | die_at_start | garbage | close_output | reverse N
+//     fake_worker normal | gate FILE | die_at_start | garbage | close_output | reverse N
 #include "bakerd/farm/worker_protocol.h"
 
 #include <unistd.h>
@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <string>
@@ -21,6 +22,8 @@ namespace {
 
 using namespace drtv::farm;
 namespace fake = drtv::test::fake;
+
+std::filesystem::path gate;
 
 void say(const WorkerAnswer& answer) {
     std::printf("%s\n", encode(answer).c_str());
@@ -35,9 +38,9 @@ void answer(const BakeRequest& request) {
         case fake::deadly: std::raise(SIGKILL); break;
         case fake::quits: std::_Exit(3);
         case fake::silent: return;
-        case fake::slow:
+        case fake::gated:
             std::thread([request] {
-                std::this_thread::sleep_for(std::chrono::milliseconds(300));
+                while (!std::filesystem::exists(gate)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
                 say({request.id, baked(request)});
             }).detach();
             return;
@@ -70,6 +73,7 @@ int main(int argc, char** argv) {
     const std::string mode = argc > 1 ? argv[1] : "normal";
     if (mode == "die_at_start") return 4;
     if (mode == "close_output") ::close(STDOUT_FILENO);
+    if (mode == "gate" && argc > 2) gate = argv[2];
     std::size_t batch = mode == "reverse" && argc > 2 ? std::stoul(argv[2]) : 1;
     std::vector<WorkerRequest> held;
     std::string line;

@@ -1,11 +1,13 @@
 #include "bakerd/farm/local_executor.h"
 #include "tests/farm/fake_worker.h"
+#include "tests/farm/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <ctime>
 #include <set>
+#include <thread>
 
 namespace drtv::farm {
 namespace {
@@ -27,6 +29,7 @@ class LocalExecutorTest : public testing::Test {
             if (queue.empty()) return std::nullopt;
             const BakeRequest request = queue.front();
             queue.pop_front();
+            changed.notify_all();
             return request;
         };
         callbacks.finished = [this](std::uint64_t id, int failed_attempts, Outcome outcome) {
@@ -49,6 +52,13 @@ class LocalExecutorTest : public testing::Test {
         executor->wake();
         std::unique_lock lock(mutex);
         return changed.wait_for(lock, long_enough, [&] { return outcomes.size() == added; });
+    }
+
+    // Until `count` sectors have left the queue: they are in flight or done, however slow the machine.
+    void wait_until_taken(std::size_t count) {
+        executor->wake();
+        std::unique_lock lock(mutex);
+        ASSERT_TRUE(changed.wait_for(lock, long_enough, [&] { return added - queue.size() == count; }));
     }
 
     void expect_baked(std::uint64_t id) {
@@ -176,8 +186,7 @@ TEST_F(LocalExecutorTest, AMapThatKillsTheWorkerFailsWithAReason) {
 TEST_F(LocalExecutorTest, AnInspectionThatMustWaitCostsNoTime) {
     start_fake("normal", 1);
     for (int n = 0; n < 3; ++n) add(fake::silent);  // the window is full, for ever
-    executor->wake();
-    std::this_thread::sleep_for(300ms);
+    wait_until_taken(3);
     auto answer = executor->ask(InspectRequest{0, {}});
     const std::clock_t before = std::clock();
     EXPECT_EQ(answer.wait_for(500ms), std::future_status::timeout);
@@ -204,16 +213,19 @@ TEST_F(LocalExecutorTest, TheDestructorAnswersPendingInspections) {
 }
 
 TEST_F(LocalExecutorTest, StopWaitsForWhatIsInFlightAndStartsNothing) {
-    start_fake("normal", 1);
-    for (int n = 0; n < 20; ++n) add(fake::slow);
-    executor->wake();
-    std::this_thread::sleep_for(150ms);
-    executor->stop(10s);
-    const std::lock_guard lock(mutex);
-    EXPECT_EQ(outcomes.size(), 3u);  // the window
+    const test::TemporaryFolder folder;
+    const std::string gate = folder.path() + "/gate";
+    start({DRTV_FAKE_WORKER, "gate", gate}, 1);
+    for (int n = 0; n < 20; ++n) add(fake::gated);
+    wait_until_taken(3);  // the window
+    std::thread stopping([&] { executor->stop(long_enough); });
+    // A question is refused from the moment on that the stop has begun; the gate opens only then.
+    while (executor->ask(InspectRequest{0, {}}).wait_for(2ms) != std::future_status::ready) {}
+    EXPECT_TRUE(outcomes.empty());
+    test::write_file(gate, "open");
+    stopping.join();
+    EXPECT_EQ(outcomes.size(), 3u);
     EXPECT_EQ(queue.size(), 17u);
-    auto refused = executor->ask(InspectRequest{0, {}});
-    ASSERT_EQ(refused.wait_for(0s), std::future_status::ready);
 }
 
 TEST_F(LocalExecutorTest, StopRightAfterAWakeLosesNothing) {
@@ -233,8 +245,7 @@ TEST_F(LocalExecutorTest, StopRightAfterAWakeLosesNothing) {
 TEST_F(LocalExecutorTest, StopGivesUpAfterItsPatience) {
     start_fake("normal");
     add(fake::silent);
-    executor->wake();
-    std::this_thread::sleep_for(100ms);
+    wait_until_taken(1);
     const auto before = std::chrono::steady_clock::now();
     executor->stop(200ms);
     EXPECT_GE(std::chrono::steady_clock::now() - before, 190ms);
@@ -243,7 +254,7 @@ TEST_F(LocalExecutorTest, StopGivesUpAfterItsPatience) {
 }
 
 TEST_F(LocalExecutorTest, SectorThatHangsTheWorkerFailsAloneAndTheRestGoesOn) {
-    stall_limit = 300ms;
+    stall_limit = 1s;  // far above what a slow machine needs to start the worker
     start_fake("normal");
     add(fake::good);
     add(fake::silent);
