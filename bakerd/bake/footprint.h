@@ -15,7 +15,7 @@
 namespace drtv::bake {
 
 // Of what a record says, and how: results whose record is of another version are never candidates.
-inline constexpr std::uint32_t footprint_version = 3;
+inline constexpr std::uint32_t footprint_version = 4;
 
 // The space around a sector, as far as its rays go, in cells that are aligned to the world: columns side by side, at most 64 layers high, some way above and below
 // what stands there. Where it ends upwards and downwards, rays go on unseen. Weights are kept of blocks of 2 x 2 x 2 cells.

@@ -10,8 +10,10 @@
 namespace drtv::bake {
 namespace {
 
-// A path without any weight still shows in the file's counts.
-constexpr float least_share = 0x1p-40f;
+constexpr float units_of_one = 0x1p18f;
+static_assert(basis_count * 16 == 64);
+
+std::uint64_t most_units(std::uint64_t a, std::uint64_t b) { return static_cast<std::uint64_t>(_mm_cvtsi128_si64(_mm_max_epu16(_mm_cvtsi64_si128(static_cast<long long>(a)), _mm_cvtsi64_si128(static_cast<long long>(b))))); }
 
 struct Span {
     float from, to;
@@ -60,8 +62,20 @@ __m256i predecessors(__m256i lanes, __m256i before) {
 FootprintRecorder::FootprintRecorder(const FootprintGrid& grid)
     : grid_(grid), crossed_(static_cast<std::size_t>(grid.columns + 2) * static_cast<std::size_t>(grid.rows + 2)),
       // What crosses the border by rounding counts for blocks that nobody asks for.
-      blocks_(grid.block_count() + static_cast<std::size_t>((grid.columns + 4) * (grid.layers + 1) / 2)) {
-    for (std::vector<float>& most : most_) most.resize(blocks_.size());
+      seen_(grid.block_count() + static_cast<std::size_t>((grid.columns + 4) * (grid.layers + 1) / 2)), shares_(seen_.size()) {
+    for (std::vector<Units>& most : most_) most.resize(shares_.size());
+}
+
+// Rounded up, and never 0: a path without any weight still shows in the file's counts.
+FootprintRecorder::Units FootprintRecorder::units_of(const Shares& shares) {
+    const __m128 whole = _mm_ceil_ps(_mm_mul_ps(_mm_loadu_ps(shares.data()), _mm_set1_ps(units_of_one)));
+    const __m128i lanes = _mm_cvtps_epi32(_mm_max_ps(_mm_min_ps(whole, _mm_set1_ps(65535)), _mm_set1_ps(1)));
+    return static_cast<Units>(_mm_cvtsi128_si64(_mm_packus_epi32(lanes, lanes)));
+}
+
+void FootprintRecorder::count(std::size_t block, Units units) {
+    const __m128i sum = _mm_adds_epu16(_mm_cvtsi64_si128(static_cast<long long>(shares_[block])), _mm_cvtsi64_si128(static_cast<long long>(units)));
+    shares_[block] = static_cast<Units>(_mm_cvtsi128_si64(sum));
 }
 
 void FootprintRecorder::begin(std::size_t quarter) {
@@ -72,10 +86,10 @@ void FootprintRecorder::begin(std::size_t quarter) {
 
 // The probe's shares join those of its quarter.
 void FootprintRecorder::fold() {
-    std::vector<float>& most = most_[quarter_];
-    for (std::size_t n = 0; n < blocks_.size(); ++n) {
-        most[n] = std::max(most[n], blocks_[n].share);
-        blocks_[n].share = 0;
+    std::vector<Units>& most = most_[quarter_];
+    for (std::size_t n = 0; n < shares_.size(); ++n) {
+        most[n] = most_units(most[n], shares_[n]);
+        shares_[n] = 0;
     }
 }
 
@@ -164,22 +178,22 @@ void FootprintRecorder::cross_corners() {
     corners_ = 0;
 }
 
-void FootprintRecorder::path(const trace::Ray& ray, float length_m, float share, std::uint32_t number) {
-    const float weight = std::max(share, least_share);
+void FootprintRecorder::path(const trace::Ray& ray, float length_m, const Shares& shares, std::uint32_t number) {
+    const Units units = units_of(shares);
     if (number_ != number) {
         number_ = number;
         ++path_;
     }
     for (const std::int32_t index : cross(ray, length_m)) {
-        Block& block = blocks_[static_cast<std::size_t>(index)];
-        block.share += block.seen == path_ ? 0 : weight;
-        block.seen = path_;
+        const auto block = static_cast<std::size_t>(index);
+        count(block, seen_[block] == path_ ? 0 : units);
+        seen_[block] = path_;
     }
 }
 
-void FootprintRecorder::lone(const trace::Ray& ray, float share) {
-    const float weight = std::max(share, least_share);
-    for (const std::int32_t index : cross(ray, ray.far_m)) blocks_[static_cast<std::size_t>(index)].share += weight;
+void FootprintRecorder::lone(const trace::Ray& ray, const Shares& shares) {
+    const Units units = units_of(shares);
+    for (const std::int32_t index : cross(ray, ray.far_m)) count(static_cast<std::size_t>(index), units);
 }
 
 void FootprintRecorder::merge_into(Footprint& footprint) {
@@ -190,8 +204,9 @@ void FootprintRecorder::merge_into(Footprint& footprint) {
     fold();
     for (std::size_t quarter = 0; quarter < quarter_count; ++quarter) {
         for (std::size_t n = 0; n < grid_.block_count(); ++n) {
+            const auto lanes = std::bit_cast<std::array<std::uint16_t, basis_count>>(most_[quarter][n]);
             std::uint8_t& weight = footprint.weights[n * quarter_count + quarter];
-            weight = std::max(weight, weight_code(most_[quarter][n]));
+            weight = std::max(weight, weight_code(static_cast<float>(*std::ranges::max_element(lanes)) / units_of_one));
         }
     }
 }

@@ -4,6 +4,7 @@
 #include "bakerd/bake/footprint.h"
 #include "bakerd/trace/scene.h"
 
+#include <drtv/conventions.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <array>
@@ -14,6 +15,9 @@
 
 namespace drtv::bake {
 
+// What a change can alter at most, as a share of the range of coefficients: for each basis direction, since their coefficients are told apart.
+using Shares = std::array<float, basis_count>;
+
 class FootprintRecorder {
   public:
     explicit FootprintRecorder(const FootprintGrid& grid);
@@ -21,22 +25,22 @@ class FootprintRecorder {
     // What follows is another probe's, which stands in that quarter: shares add up within one, and the largest of all counts.
     void begin(std::size_t quarter);
 
-    // A part of the path of that number, as far as `length_m`: a change anywhere on it changes what the path brings by at most `share` of a coefficient. Of
+    // A part of the path of that number, as far as `length_m`: a change anywhere on it changes what the path brings by at most `shares`. Of
     // a path's parts the first through a block counts alone: later ones weigh less (trace::most_scattered).
-    void path(const trace::Ray& ray, float length_m, float share, std::uint32_t number);
+    void path(const trace::Ray& ray, float length_m, const Shares& shares, std::uint32_t number);
 
-    // A ray whose share is its own, as that to a light.
-    void lone(const trace::Ray& ray, float share);
+    // A ray whose shares are its own, as that to a light.
+    void lone(const trace::Ray& ray, const Shares& shares);
 
     // Of each column all layers of both, of each block the larger code. REQUIRES: the footprint is of the same grid.
     void merge_into(Footprint& footprint);
 
   private:
-    // Small: a sector's blocks should stay in the caches.
-    struct Block {
-        std::uint32_t seen = 0;  // by which path last
-        float share = 0;         // of the probe at work
-    };
+    // Shares, 16 bits each in units of 2^-18: a sector's blocks should stay in the caches. They saturate beyond what weights can tell.
+    using Units = std::uint64_t;
+
+    [[nodiscard]] static Units units_of(const Shares& shares);
+    void count(std::size_t block, Units units);
 
     // Gives the blocks that the ray crosses, each once; they stand until the next call.
     [[nodiscard]] std::span<const std::int32_t> cross(const trace::Ray& ray, float length_m);
@@ -45,8 +49,9 @@ class FootprintRecorder {
 
     const FootprintGrid grid_;
     std::vector<std::uint64_t> crossed_;  // by column; with a border of one, where a walk may end by rounding
-    std::vector<Block> blocks_;
-    std::array<std::vector<float>, quarter_count> most_;  // by block: the largest share of the probes before
+    std::vector<std::uint32_t> seen_;                     // by block: by which path last
+    std::vector<Units> shares_;                           // by block: of the probe at work
+    std::array<std::vector<Units>, quarter_count> most_;  // by block: the largest of the probes before
     std::vector<std::int32_t> list_;                      // of a ray's blocks
     // Columns that rays passed at a corner, and their layers, highest x 256 + lowest. Many in one go: a branch at each would cost more than all the rest.
     std::vector<std::int32_t> corner_columns_, corner_layers_;

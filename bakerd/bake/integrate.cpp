@@ -165,13 +165,13 @@ class Integrator {
         }
     }
 
-    // What a change on this part of the path could change at most, as a share of the mean over the cosine around a basis direction.
+    // What a change on this part of the path could change at most, as a share of the means over the cosines around the basis directions.
     void note_path(const trace::Ray& ray, float length_m, const BasisWeights& weights, const glm::vec3& throughput, std::uint32_t n, std::uint32_t bounce) {
         if (watch_.footprint == nullptr || bounce == 0) return;
-        watch_.footprint->path(ray, length_m, share_of(weights) * brightest(throughput) * 4 / static_cast<float>(samples_.count()), n);
+        watch_.footprint->path(ray, length_m, scaled(weights, brightest(throughput) * 4 / static_cast<float>(samples_.count())), n);
     }
 
-    static float share_of(const BasisWeights& weights) { return std::max({weights[0], weights[1], weights[2], weights[3]}); }
+    static Shares scaled(const BasisWeights& weights, float by) { return {weights[0] * by, weights[1] * by, weights[2] * by, weights[3] * by}; }
 
     // A closed room has no sky at all, not even one ray of it: the first misses are looked at twice. Where these stand, the sky
     // is in sight, and a ray more or less of it is no leak.
@@ -269,7 +269,7 @@ class Integrator {
         ++light_.shadow_rays;
         const trace::Ray ray = NextEvent::shadow_ray(start, incident);
         if (watch_.log != nullptr) watch_.log->shadows.push_back(ray);
-        if (watch_.footprint != nullptr) watch_.footprint->lone(ray, share_of(weights) * brightest(light) / static_irradiance_range);
+        if (watch_.footprint != nullptr) watch_.footprint->lone(ray, scaled(weights, brightest(light) / static_irradiance_range));
         return !scene_.occluded(ray);
     }
 

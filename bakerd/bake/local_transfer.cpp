@@ -25,6 +25,8 @@ namespace {
 
 constexpr std::uint32_t group_size = 16;  // a power of two
 
+constexpr Shares all_of_it = {1, 1, 1, 1};
+
 float square(float x) { return x * x; }
 
 // The end of a path from source p after one or more bounces, seen from the point that other sources would light.
@@ -139,7 +141,7 @@ class LocalIntegrator {
         for (std::uint32_t bounce = 0; bounce < settings_.bounces; ++bounce) {
             ++rays;
             const std::optional<trace::Hit> hit = scene_.closest(ray);
-            if (recorder != nullptr) recorder->path(ray, hit ? hit->distance_m : ray.far_m, 1, n);
+            if (recorder != nullptr) recorder->path(ray, hit ? hit->distance_m : ray.far_m, all_of_it, n);
             if (!hit) return;
             footprint_m += hit->distance_m * later_footprint;
             const trace::Surface surface = scene_.surface(*hit, footprint_m);
@@ -147,7 +149,7 @@ class LocalIntegrator {
             const std::optional<glm::vec3> before = before_surface(ray, *hit);
             if (!before) return;
             const float share = transmitted_share(surface);
-            if (recorder != nullptr && share > 0) recorder->path(ray, end_of_beyond_surface(ray, *hit), 1, n);
+            if (recorder != nullptr && share > 0) recorder->path(ray, end_of_beyond_surface(ray, *hit), all_of_it, n);
             end.position = ray.origin + ray.direction * hit->distance_m;
             end.normal = hit->normal;
             end.before = *before;
@@ -213,7 +215,7 @@ class LocalIntegrator {
         }
         brought.rays += work.shadows.size();
         if (work.recorder != nullptr) {
-            for (const trace::Ray& shadow : work.shadows) work.recorder->lone(shadow, 1);
+            for (const trace::Ray& shadow : work.shadows) work.recorder->lone(shadow, all_of_it);
         }
         scene_.occluded(work.shadows, work.hidden);
         for (std::size_t n = 0; n < work.shadows.size(); ++n) {

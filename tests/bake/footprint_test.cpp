@@ -50,6 +50,8 @@ TEST(FootprintGrid, CoversTheDistanceAndTheHeights) {
     }
 }
 
+bake::Shares even(float share) { return {share, share, share, share}; }
+
 // Whatever point of a ray is asked for, its cell is marked, and its block has the ray's weight, once. Rays as long as the grid goes, from below and above it too.
 TEST(FootprintRecorder, NoPointOfARayIsMissing) {
     std::mt19937 random(5);
@@ -68,8 +70,8 @@ TEST(FootprintRecorder, NoPointOfARayIsMissing) {
             if (n % 11 == 0) direction.x = 0;
             if (glm::length(direction) < 0.1f) continue;
             const trace::Ray ray{{place(random), place(random), height(random)}, glm::normalize(direction), length_m};
-            if (n % 2 == 0) recorder.path(ray, ray.far_m, 0.01f, 3);
-            else recorder.lone(ray, 0.01f);
+            if (n % 2 == 0) recorder.path(ray, ray.far_m, even(0.01f), 3);
+            else recorder.lone(ray, even(0.01f));
             bake::Footprint footprint;
             recorders.store(footprint);
             for (int k = 0; k < 300; ++k) {
@@ -96,24 +98,40 @@ TEST(FootprintRecorder, SharesAddUpInAProbeAndTheLargestOfAQuarterCounts) {
     const bake::FootprintGrid grid = bake::footprint_grid({0, 0}, 200, 0, 20);
     bake::FootprintRecorders recorders(grid);
     bake::FootprintRecorder& recorder = recorders.of_this_thread();
-    const trace::Ray up{{32, 32, 5}, {0, 0, 1}, 2};
+    const trace::Ray up{{32, 32, 5}, {0, 0, 1}, 2}, aside{{-64, 32, 5}, {0, 0, 1}, 2};
     recorder.begin(3);
     for (std::uint32_t path = 0; path < 4; ++path) {
-        recorder.path(up, 2, 0x1p-10f, path);
-        recorder.path(up, 2, 0x1p-11f, path);  // its later part, through the same block
+        recorder.path(up, 2, even(0x1p-10f), path);
+        recorder.path(up, 2, even(0x1p-11f), path);  // its later part, through the same block
     }
     recorder.begin(3);
-    recorder.path(up, 2, 0x1p-9f, 0);
-    recorder.lone(up, 0x1p-13f);
+    recorder.path(up, 2, even(0x1p-9f), 0);
+    recorder.lone(up, even(0x1p-13f));
     recorder.begin(1);
-    recorder.path(up, 2, 0x1p-12f, 0);
+    recorder.path(up, 2, even(0x1p-12f), 0);
+    // Of another quarter: to each basis direction its own sum, however little or much.
+    recorder.begin(2);
+    for (std::uint32_t path = 0; path < 8; ++path) {
+        bake::Shares shares{};
+        shares[path % shares.size()] = 0x1p-10f;
+        recorder.path(up, 2, shares, path);
+    }
+    recorder.lone(aside, {0, 0, 0, 0});
+    recorder.begin(0);
+    for (std::uint32_t path = 0; path < 100; ++path) recorder.path(up, 2, even(path % 2 == 0 ? 0x1p-4f : 1e12f), path);
     bake::Footprint footprint;
     recorders.store(footprint);
-    const glm::ivec3 cell(glm::floor((up.origin - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
-    const auto weight = [&](std::size_t quarter) { return bake::weight_of_code(footprint.weight(grid.block(cell.x, cell.y, cell.z), quarter)); };
-    EXPECT_EQ(weight(3), 0x1p-8f);
-    EXPECT_EQ(weight(1), 0x1p-12f);
-    EXPECT_EQ(weight(0), 0);
+    const auto weight = [&](const trace::Ray& ray, std::size_t quarter) {
+        const glm::ivec3 cell(glm::floor((ray.origin - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
+        return bake::weight_of_code(footprint.weight(grid.block(cell.x, cell.y, cell.z), quarter));
+    };
+    EXPECT_EQ(weight(up, 3), 0x1p-8f);
+    EXPECT_EQ(weight(up, 1), 0x1p-12f);
+    EXPECT_EQ(weight(aside, 1), 0);
+    // 2^-9, and the six units that the other paths count.
+    EXPECT_EQ(bake::weight_code(weight(up, 2)), bake::weight_code(0x1p-9f) + 1);
+    EXPECT_EQ(weight(aside, 2), 0x1p-12f) << "a ray without weight is a ray";
+    EXPECT_EQ(weight(up, 0), 1) << "more than can be told";
 }
 
 TEST(Footprint, QuartersAreSquaresOf32Metres) {
