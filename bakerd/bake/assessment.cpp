@@ -131,7 +131,7 @@ class FirstRays {
         std::array<float, basis_count> sums{};
         std::vector<Window> windows;
         for (const Bounds& box : boxes) {
-            if (distance(box, probe.place) <= footprint_.reach_m) windows.push_back(window_of(probe.place, box));
+            if (distance(box, probe.place) <= farthest_m()) windows.push_back(window_of(probe.place, box));
         }
         if (windows.empty()) return 0;
         for (std::uint32_t g = 0; g < probe.groups.size(); ++g) {
@@ -141,10 +141,7 @@ class FirstRays {
                 const glm::vec3 direction = uniform_sphere(shifted(samples_.point(n), probe.shift, 0));
                 float enter = std::numeric_limits<float>::infinity();
                 for (const Bounds& box : boxes) enter = std::min(enter, entry_distance(probe.place, direction, box));
-                if (!(enter <= footprint_.reach_m)) continue;
-                // What stops the ray before the boxes is in both maps; where it is let through, so is all that it was asked for just behind.
-                const trace::Ray ray{probe.place, direction, enter};
-                if (const auto hit = enter > 0 ? scene_.closest(ray) : std::nullopt; hit && end_of_beyond_surface(ray, *hit) < enter) continue;
+                if (!(enter <= farthest_m()) || !may_come_to({probe.place, direction, footprint_.reach_m}, enter)) continue;
                 // Sky visibility is a mean over the upper half alone: so much more does a ray of it count there.
                 constexpr float upper_gain = 1.26794919f;
                 for (std::size_t b = 0; b < basis_count; ++b) {
@@ -157,6 +154,22 @@ class FirstRays {
     }
 
   private:
+    // A step over a surface at the end of the reach may end behind it, by less than half of the way (before_surface).
+    [[nodiscard]] float farthest_m() const { return footprint_.reach_m * 1.5f; }
+
+    // Whether anything is asked about what lies `enter_m` along a first ray, or beyond. What stops the ray before is in both maps; where it is let through, so is all that
+    // it was asked for just behind.
+    [[nodiscard]] bool may_come_to(const trace::Ray& ray, float enter_m) const {
+        if (enter_m <= 0) return true;
+        const auto steps_over = [&](const trace::Ray& first) {
+            const auto hit = scene_.closest({first.origin, first.direction, std::min(enter_m, first.far_m)});
+            return hit ? std::optional(end_of_beyond_surface(first, *hit) >= enter_m) : std::nullopt;
+        };
+        if (const auto over = steps_over(ray)) return *over;
+        // The first misses are looked at twice (integrate.cpp).
+        return enter_m <= ray.far_m || steps_over(trace::beside(ray)).value_or(false);
+    }
+
     // Samples that start side by side, and what they span of their numbers.
     static constexpr std::uint32_t group_size = 8;
     struct Group {

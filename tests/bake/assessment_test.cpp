@@ -38,7 +38,8 @@ struct Yard {
     [[nodiscard]] GltfBuilder build() const {
         GltfBuilder b;
         std::vector<int> materials;
-        for (const glm::vec4& colour : colours) materials.push_back(b.add_material({.colour = colour}));
+        // Leaves let light through: paths step over surfaces.
+        for (const glm::vec4& colour : colours) materials.push_back(b.add_material({.colour = colour, .double_sided = materials.size() == 2}));
         const std::vector<int> meshes = {b.add_mesh(ground(130), materials[0]), b.add_mesh(box({-2, 0, -2}, {2, 5, 2}), materials[1]), b.add_mesh(box({-crown_m, 1, -crown_m}, {crown_m, 5, crown_m}), materials[2])};
         b.add_node({.mesh = meshes[0], .name = "ground"});
         for (const Thing& thing : things) b.add_node({.mesh = meshes[static_cast<std::size_t>(thing.mesh)], .translation = thing.at, .name = thing.name, .role = thing.role});
