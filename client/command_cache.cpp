@@ -5,20 +5,29 @@
 #include <grpcpp/grpcpp.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace drtv::client {
 
 int run_cache(Connection& connection, bool clear) {
-    grpc::ClientContext context;
-    v1::CacheState state;
-    const grpc::Status status = clear ? connection.cache->ClearCache(&context, {}, &state) : connection.cache->GetCache(&context, {}, &state);
-    if (!status.ok()) return complain(connection.sentence(status));
+    v1::CacheState state, before;
+    grpc::ClientContext context, clearing;
+    if (const grpc::Status status = connection.cache->GetCache(&context, {}, &state); !status.ok()) return complain(connection.sentence(status));
+    if (clear) {
+        before = state;
+        if (const grpc::Status status = connection.cache->ClearCache(&clearing, {}, &state); !status.ok()) return complain(connection.sentence(status));
+    }
+    // Others may bake in the meantime.
+    const std::int64_t removed = std::max<std::int64_t>(before.results() - state.results(), 0);
     const std::int64_t reused = state.hits() + state.near_hits(), asked = reused + state.baked();
     if (connection.options.json) {
-        std::puts(nlohmann::ordered_json({{"results", state.results()}, {"size", state.size_bytes()}, {"limit", state.limit_bytes()}, {"hits", state.hits()}, {"near_hits", state.near_hits()}, {"baked", state.baked()}}).dump().c_str());
+        nlohmann::ordered_json json = {{"results", state.results()}, {"size", state.size_bytes()}, {"limit", state.limit_bytes()}, {"hits", state.hits()}, {"near_hits", state.near_hits()}, {"baked", state.baked()}};
+        if (clear) json["removed"] = removed;
+        std::puts(json.dump().c_str());
         return 0;
     }
+    if (clear) std::printf("%s results removed\n", with_thousands(removed).c_str());
     std::printf("%s results, %.1f of %.1f MB\n", with_thousands(state.results()).c_str(), static_cast<double>(state.size_bytes()) * 1e-6, static_cast<double>(state.limit_bytes()) * 1e-6);
     if (asked > 0) {
         std::printf("%s sectors so far: %s hits, %s near hits, %s baked (hit rate %.1f %%)\n", with_thousands(asked).c_str(), with_thousands(state.hits()).c_str(), with_thousands(state.near_hits()).c_str(),

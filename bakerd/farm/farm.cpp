@@ -162,16 +162,17 @@ Result<Farm::Planned> Farm::make_plan(const JobRequest& request) {
         if (!plan) return tl::unexpected(plan.error());
         planned.plan = std::move(*plan);
     }
-    const auto question = question_of(planned.plan, request.manifest, *settings);
-    if (!question) return planned;
-    const Outcome outcome = executor_->ask(*question).get();
-    if (const auto* answer = std::get_if<AssessAnswer>(&outcome)) {
-        apply(*answer, planned.plan);
-    } else {
-        // Then everything is baked that is not known for certain.
-        const auto* failure = std::get_if<FailureAnswer>(&outcome);
-        planned.plan.warnings.push_back(fmt::format("older results could not be looked at: {}", failure != nullptr ? failure->sentence : "the worker gave an answer to another question"));
+    if (const auto question = question_of(planned.plan, request.manifest, *settings)) {
+        const Outcome outcome = executor_->ask(*question).get();
+        if (const auto* answer = std::get_if<AssessAnswer>(&outcome)) {
+            apply(*answer, planned.plan);
+        } else {
+            // Then everything is baked that is not known for certain.
+            const auto* failure = std::get_if<FailureAnswer>(&outcome);
+            planned.plan.warnings.push_back(fmt::format("older results could not be looked at: {}", failure != nullptr ? failure->sentence : "the worker gave an answer to another question"));
+        }
     }
+    drop_damaged(*blobs_, planned.plan);
     for (const std::string& warning : planned.plan.warnings) spdlog::warn("{}", warning);
     return planned;
 }

@@ -1,5 +1,7 @@
 #include "bakerd/farm/plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +11,9 @@ namespace {
 
 // Of one sector: branches of a map, and steps back.
 constexpr std::size_t most_candidates = 8;
+
+constexpr std::size_t most_warnings = 20;
+constexpr const char* lost = "its earlier result is lost";
 
 // Sectors are baked in rings around changes; within one in the order in which they share scenes.
 constexpr float ring_m = 192;
@@ -60,9 +65,9 @@ Result<Plan> look_up(Database& database, const BlobStore& blobs, const InspectAn
             break;
         }
         if (planned.reused) continue;
-        planned.reason = "it was not baked before";
         auto rows = database.results(sector, results_key, most_candidates);
         if (!rows) return tl::unexpected(rows.error());
+        planned.reason = rows->empty() ? "it was not baked with these settings before" : lost;
         for (ResultRow& row : *rows) {
             if (!blobs.has(row.result.result)) continue;
             if (row.result.inventory == map.inventory && row.result.bound <= settings.tolerance) {
@@ -70,6 +75,7 @@ Result<Plan> look_up(Database& database, const BlobStore& blobs, const InspectAn
                 break;
             }
             if (planned.candidates.empty()) planned.seconds = row.result.seconds;
+            planned.reason = "its earlier results were not looked at";
             planned.candidates.push_back(std::move(row));
         }
     }
@@ -113,6 +119,19 @@ void apply(const AssessAnswer& answer, Plan& plan) {
         for (const AssessAnswer::Change& change : plan.changes) nearest = std::min(nearest, distance_m(planned.sector, change.bounds));
         return std::floor(nearest / ring_m);
     });
+}
+
+void drop_damaged(BlobStore& blobs, Plan& plan) {
+    for (PlannedSector& planned : plan.sectors) {
+        if (!planned.reused) continue;
+        const auto bytes = blobs.get(planned.reused->result);
+        if (bytes) continue;
+        planned.verdict = bake::Verdict::rebake;
+        planned.reused.reset();
+        planned.bound = 0;
+        planned.reason = lost;
+        if (plan.warnings.size() < most_warnings) plan.warnings.push_back(fmt::format("sector ({}, {}): an earlier result cannot be used: {}", planned.sector.i, planned.sector.j, bytes.error().message));
+    }
 }
 
 }  // namespace drtv::farm

@@ -27,7 +27,7 @@ struct PlannedSector {
 struct Plan {
     std::vector<PlannedSector> sectors;  // in the order of baking
     std::vector<AssessAnswer::Change> changes;
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings;  // at most 20
 
     [[nodiscard]] std::int64_t count(bake::Verdict verdict) const;
 };
@@ -43,5 +43,8 @@ struct Plan {
 
 // Takes in the answer to question_of(plan), and puts sectors near changes first.
 void apply(const AssessAnswer& answer, Plan& plan);
+
+// Reads the files of what is reused. One that is not as it was written is removed and told: its sector is baked.
+void drop_damaged(BlobStore& blobs, Plan& plan);
 
 }  // namespace drtv::farm

@@ -53,29 +53,42 @@ grpc::Status SectorsService::ListSectors(grpc::ServerContext*, const v1::ListSec
 grpc::Status SectorsService::PullSectors(grpc::ServerContext*, const v1::PullSectorsRequest* request, grpc::ServerWriter<v1::PullSectorsResponse>* writer) {
     const auto job = job_from_name(request->job());
     if (!job) return to_status(job.error());
+    std::int64_t lost = 0;
+    std::string first_loss;
+    const auto send_or_note = [&](const farm::SectorView& view) -> grpc::Status {
+        grpc::Status status = send(view, *writer);
+        if (status.error_code() != grpc::StatusCode::DATA_LOSS) return status;
+        if (++lost == 1) first_loss = status.error_message();
+        return grpc::Status::OK;
+    };
+    const auto end = [&]() -> grpc::Status {
+        if (lost == 0) return grpc::Status::OK;
+        const std::string more = lost > 1 ? fmt::format(" (and {} more)", lost - 1) : "";
+        return {grpc::StatusCode::DATA_LOSS, fmt::format("{}{}; submit the map again to bake {} anew", first_loss, more, lost > 1 ? "them" : "it")};
+    };
     if (request->sectors_size() == 0) {
         for (std::int64_t first = 0;; first += default_page) {
             const auto views = farm_.list_sectors(*job, first, default_page);
             if (!views) return to_status(views.error());
             for (const farm::SectorView& view : *views) {
                 if (view.task.state != farm::TaskState::done) continue;
-                if (grpc::Status status = send(view, *writer); !status.ok()) return status;
+                if (grpc::Status status = send_or_note(view); !status.ok()) return status;
             }
-            if (views->size() < static_cast<std::size_t>(default_page)) return grpc::Status::OK;
+            if (views->size() < static_cast<std::size_t>(default_page)) return end();
         }
     }
     for (const v1::SectorCoordinate& coordinate : request->sectors()) {
         const auto view = farm_.get_sector(*job, {coordinate.i(), coordinate.j()});
         if (!view) return to_status(view.error());
         if (view->task.state != farm::TaskState::done) return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("sector ({}, {}) is not done", coordinate.i(), coordinate.j())};
-        if (grpc::Status status = send(*view, *writer); !status.ok()) return status;
+        if (grpc::Status status = send_or_note(*view); !status.ok()) return status;
     }
-    return grpc::Status::OK;
+    return end();
 }
 
 grpc::Status SectorsService::send(const farm::SectorView& view, grpc::ServerWriter<v1::PullSectorsResponse>& writer) {
     const auto bytes = farm_.blobs().get(view.task.result.result);
-    if (!bytes) return {grpc::StatusCode::DATA_LOSS, fmt::format("sector ({}, {}): {}; submit the map again to bake it anew", view.task.sector.i, view.task.sector.j, bytes.error().message)};
+    if (!bytes) return {grpc::StatusCode::DATA_LOSS, fmt::format("sector ({}, {}): {}", view.task.sector.i, view.task.sector.j, bytes.error().message)};
     v1::PullSectorsResponse message;
     fill(view, *message.mutable_sector());
     if (!writer.Write(message)) return grpc::Status::CANCELLED;

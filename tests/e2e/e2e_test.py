@@ -3,6 +3,7 @@
 import argparse
 import base64
 import csv
+import hashlib
 import json
 import os
 import signal
@@ -283,22 +284,28 @@ class Crashes(FarmTest):
     def test_damaged_result_is_baked_again(self):
         island = self.island(100)
         daemon = self.farm.daemon()
-        region = ["--region", "0,0,1,1", *FEW_RAYS]
+        region = ["--region", "0,0,65,65", *FEW_RAYS]
         first = self.pulled(daemon, island, *region, name="first")
-        (content,) = first.values()
-        damaged = 0
-        for folder, _, names in os.walk(self.farm.path("data/blobs/objects")):
-            for name in names:
-                with open(os.path.join(folder, name), "r+b") as blob:
-                    if blob.read() == content:
-                        blob.seek(100)
-                        blob.write(b"\xff\xff")
-                        damaged += 1
-        self.assertEqual(damaged, 1)
+        self.assertEqual(len(first), 4)
+
+        def damage(name):
+            path = self.farm.path("data/blobs/objects/" + (digest := hashlib.sha256(first[name]).hexdigest())[:2] + "/" + digest)
+            with open(path, "r+b") as blob:
+                blob.seek(100)
+                blob.write(b"\xff\xff")
+
+        damage("sector_0_0.drtv")
+        damage("sector_1_0.drtv")
         refused = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("second"))
-        self.assert_sentence(refused, "damaged", "submit the map again")
-        self.assertEqual(os.listdir(self.farm.path("second")), [])
+        self.assert_sentence(refused, "damaged", "and 1 more", "submit the map again")
+        self.assertEqual(read_folder(self.farm.path("second")), {name: first[name] for name in ("sector_0_1.drtv", "sector_1_1.drtv")})
         self.assertEqual(self.pulled(daemon, island, *region, name="third"), first)
+        # One that nobody has pulled since: the submit finds it, tells it and bakes it anew.
+        damage("sector_0_1.drtv")
+        again = self.farm.bake(daemon, "submit", island, *region, "--pull", self.farm.path("fourth"))
+        self.assertIn("sector (0, 1): an earlier result cannot be used", again.stderr)
+        self.assertIn("3 of them from the cache", again.stdout)
+        self.assertEqual(read_folder(self.farm.path("fourth")), first)
 
 
 class Client(FarmTest):
@@ -473,7 +480,7 @@ class Incremental(FarmTest):
         first = edited.write(self.farm.path("first"))
         fresh = json.loads(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS).stdout)
         self.assertEqual((fresh["hits"], fresh["rebakes"]), (0, 35))
-        self.assertEqual(fresh["sectors"][0]["reason"], "it was not baked before")
+        self.assertEqual(fresh["sectors"][0]["reason"], "it was not baked with these settings before")
         self.assertEqual(self.job_of(daemon, first, *REGION, *FEW_RAYS)["sectors_cached"], 0)
         self.assertEqual(json.loads(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS).stdout)["hits"], 35)
 

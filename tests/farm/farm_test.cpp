@@ -262,6 +262,24 @@ TEST_F(FarmTest, ALostResultIsBakedAgainOnResubmit) {
     EXPECT_EQ(farm->blobs().get(before[2]).value(), bytes);
 }
 
+TEST_F(FarmTest, ADamagedResultIsAMissAndIsTold) {
+    const std::string gltf = ground_gltf(128);
+    const std::int64_t first = wait(submit(quick(create(gltf)->id)).row.id).row.id;
+    const std::vector<Digest> before = results(first);
+    const std::vector<std::uint8_t> bytes = farm->blobs().get(before[2]).value();
+    // The same map again, and another file of the same content.
+    for (const std::string& map : {gltf, gltf + " "}) {
+        test::write_file(object(before[2]), "damaged");
+        const JobView again = submit(quick(create(map)->id));
+        ASSERT_FALSE(again.warnings.empty());
+        EXPECT_NE(again.warnings[0].find("damaged"), std::string::npos) << again.warnings[0];
+        expect_succeeded(wait(again.row.id), 4);
+        EXPECT_EQ(again.row.sectors_cached, 4 - std::count(before.begin(), before.end(), before[2]));
+        EXPECT_EQ(results(again.row.id), before);
+        EXPECT_EQ(farm->blobs().get(before[2]).value(), bytes);
+    }
+}
+
 // Another file of the same content, and one of other content.
 TEST_F(FarmTest, AnotherMapFindsWhatStillHolds) {
     const std::string gltf = ground_gltf(128);
