@@ -11,15 +11,15 @@
 namespace drtv::client {
 
 int run_cache(Connection& connection, bool clear) {
-    v1::CacheState state, before;
+    v1::CacheState state;
     grpc::ClientContext context, clearing;
     if (const grpc::Status status = connection.cache->GetCache(&context, {}, &state); !status.ok()) return complain(connection.sentence(status));
+    std::int64_t removed = state.results();
     if (clear) {
-        before = state;
         if (const grpc::Status status = connection.cache->ClearCache(&clearing, {}, &state); !status.ok()) return complain(connection.sentence(status));
     }
     // Others may bake in the meantime.
-    const std::int64_t removed = std::max<std::int64_t>(before.results() - state.results(), 0);
+    removed = std::max<std::int64_t>(removed - state.results(), 0);
     const std::int64_t reused = state.hits() + state.near_hits(), asked = reused + state.baked();
     if (connection.options.json) {
         nlohmann::ordered_json json = {{"results", state.results()}, {"size", state.size_bytes()}, {"limit", state.limit_bytes()}, {"hits", state.hits()}, {"near_hits", state.near_hits()}, {"baked", state.baked()}};

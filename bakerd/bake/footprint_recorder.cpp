@@ -13,7 +13,8 @@ namespace {
 constexpr float units_of_one = 0x1p18f;
 static_assert(basis_count * 16 == 64);
 
-std::uint64_t most_units(std::uint64_t a, std::uint64_t b) { return static_cast<std::uint64_t>(_mm_cvtsi128_si64(_mm_max_epu16(_mm_cvtsi64_si128(static_cast<long long>(a)), _mm_cvtsi64_si128(static_cast<long long>(b))))); }
+__m128i as_lanes(std::uint64_t units) { return _mm_cvtsi64_si128(static_cast<long long>(units)); }
+std::uint64_t as_units(__m128i lanes) { return static_cast<std::uint64_t>(_mm_cvtsi128_si64(lanes)); }
 
 struct Span {
     float from, to;
@@ -70,12 +71,11 @@ FootprintRecorder::FootprintRecorder(const FootprintGrid& grid)
 FootprintRecorder::Units FootprintRecorder::units_of(const Shares& shares) {
     const __m128 whole = _mm_ceil_ps(_mm_mul_ps(_mm_loadu_ps(shares.data()), _mm_set1_ps(units_of_one)));
     const __m128i lanes = _mm_cvtps_epi32(_mm_max_ps(_mm_min_ps(whole, _mm_set1_ps(65535)), _mm_set1_ps(1)));
-    return static_cast<Units>(_mm_cvtsi128_si64(_mm_packus_epi32(lanes, lanes)));
+    return as_units(_mm_packus_epi32(lanes, lanes));
 }
 
 void FootprintRecorder::count(std::size_t block, Units units) {
-    const __m128i sum = _mm_adds_epu16(_mm_cvtsi64_si128(static_cast<long long>(shares_[block])), _mm_cvtsi64_si128(static_cast<long long>(units)));
-    shares_[block] = static_cast<Units>(_mm_cvtsi128_si64(sum));
+    shares_[block] = as_units(_mm_adds_epu16(as_lanes(shares_[block]), as_lanes(units)));
 }
 
 void FootprintRecorder::begin(std::size_t quarter) {
@@ -88,7 +88,7 @@ void FootprintRecorder::begin(std::size_t quarter) {
 void FootprintRecorder::fold() {
     std::vector<Units>& most = most_[quarter_];
     for (std::size_t n = 0; n < shares_.size(); ++n) {
-        most[n] = most_units(most[n], shares_[n]);
+        most[n] = as_units(_mm_max_epu16(as_lanes(most[n]), as_lanes(shares_[n])));
         shares_[n] = 0;
     }
 }

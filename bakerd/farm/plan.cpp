@@ -67,7 +67,6 @@ Result<Plan> look_up(Database& database, const BlobStore& blobs, const InspectAn
         if (planned.reused) continue;
         auto rows = database.results(sector, results_key, most_candidates);
         if (!rows) return tl::unexpected(rows.error());
-        planned.reason = rows->empty() ? "it was not baked with these settings before" : lost;
         for (ResultRow& row : *rows) {
             if (!blobs.has(row.result.result)) continue;
             if (row.result.inventory == map.inventory && row.result.bound <= settings.tolerance) {
@@ -75,9 +74,10 @@ Result<Plan> look_up(Database& database, const BlobStore& blobs, const InspectAn
                 break;
             }
             if (planned.candidates.empty()) planned.seconds = row.result.seconds;
-            planned.reason = "its earlier results were not looked at";
             planned.candidates.push_back(std::move(row));
         }
+        if (planned.reused) continue;
+        planned.reason = rows->empty() ? "it was not baked with these settings before" : planned.candidates.empty() ? lost : "its earlier results were not looked at";
     }
     return plan;
 }

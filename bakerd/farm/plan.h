@@ -27,7 +27,7 @@ struct PlannedSector {
 struct Plan {
     std::vector<PlannedSector> sectors;  // in the order of baking
     std::vector<AssessAnswer::Change> changes;
-    std::vector<std::string> warnings;  // at most 20
+    std::vector<std::string> warnings;
 
     [[nodiscard]] std::int64_t count(bake::Verdict verdict) const;
 };

@@ -289,8 +289,8 @@ class Crashes(FarmTest):
         self.assertEqual(len(first), 4)
 
         def damage(name):
-            path = self.farm.path("data/blobs/objects/" + (digest := hashlib.sha256(first[name]).hexdigest())[:2] + "/" + digest)
-            with open(path, "r+b") as blob:
+            digest = hashlib.sha256(first[name]).hexdigest()
+            with open(self.farm.path(f"data/blobs/objects/{digest[:2]}/{digest}"), "r+b") as blob:
                 blob.seek(100)
                 blob.write(b"\xff\xff")
 
