@@ -2,11 +2,15 @@
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
+#include <glm/vec3.hpp>
 #include <immintrin.h>
 
 namespace drtv::trace {
 
-std::string_view isa_class() { return "embree3-avx2"; }
+// GLM's own vector code takes approximate square roots and reciprocals.
+static_assert(GLM_CONFIG_SIMD == GLM_DISABLE);
+
+std::string_view isa_class() { return "x86-64-avx2"; }
 
 tl::expected<std::shared_ptr<Device>, std::string> Device::open() {
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2")) {

@@ -4,12 +4,14 @@
 
 #include "bakerd/map/map.h"
 #include "bakerd/trace/device.h"
+#include "bakerd/trace/instance_margin.h"
 #include "bakerd/trace/triangle_set.h"
 
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 struct RTCSceneTy;
@@ -18,19 +20,24 @@ namespace drtv::trace {
 
 class MeshBvh {
   public:
-    MeshBvh(std::shared_ptr<const Device> device, std::shared_ptr<const map::Map> map, std::uint32_t mesh, std::uint64_t revision);
+    // For instances of up to this shape: the box is larger than the mesh by its margin.
+    MeshBvh(std::shared_ptr<const Device> device, std::shared_ptr<const map::Map> map, std::uint32_t mesh, const InstanceShape& shape, std::uint64_t revision);
     ~MeshBvh();
     MeshBvh(const MeshBvh&) = delete;
     MeshBvh& operator=(const MeshBvh&) = delete;
 
     [[nodiscard]] RTCSceneTy* handle() const { return handle_; }
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
+    [[nodiscard]] const InstanceShape& shape() const { return shape_; }
+    // Not one of a triangle set: there to widen the box.
+    [[nodiscard]] bool is_margin(std::uint32_t embree_geometry) const { return embree_geometry == sets_.size(); }
     [[nodiscard]] const TriangleSet& set(std::uint32_t embree_geometry) const { return *sets_[embree_geometry]; }
 
   private:
     std::shared_ptr<const Device> device_;
     std::shared_ptr<const map::Map> map_;
     std::vector<std::unique_ptr<TriangleSet>> sets_;  // by Embree's geometry id
+    const InstanceShape shape_;
     const std::uint64_t revision_;
     RTCSceneTy* handle_;
 };
@@ -40,8 +47,8 @@ class MeshShelf {
   public:
     // The number of the next map.
     [[nodiscard]] std::uint64_t next_revision();
-    // One that a scene still holds; nothing otherwise. A BVH keeps its whole map in memory: that of a map opened long ago is not handed out any more.
-    [[nodiscard]] std::shared_ptr<const MeshBvh> find(const map::Digest& mesh, std::uint64_t revision);
+    // One that a scene still holds and that is good for the shape; nothing otherwise. A BVH keeps its whole map in memory: that of a map opened long ago is not handed out any more.
+    [[nodiscard]] std::shared_ptr<const MeshBvh> find(const map::Digest& mesh, const InstanceShape& shape, std::uint64_t revision);
     void keep(const map::Digest& mesh, const std::shared_ptr<const MeshBvh>& bvh);
 
   private:
@@ -57,18 +64,22 @@ class MapGeometry {
     MapGeometry(std::shared_ptr<const Device> device, std::shared_ptr<const map::Map> map, std::shared_ptr<MeshShelf> shelf = nullptr);
 
     [[nodiscard]] std::shared_ptr<const MeshBvh> bvh_of(std::uint32_t mesh);
+    // Nothing for an object that cannot be an instance.
+    [[nodiscard]] std::optional<InstanceShape> shape_of(const map::Object& object) const { return instance_shape(object.world_from_object, margin_m_); }
     [[nodiscard]] const std::shared_ptr<const map::Map>& map() const { return map_; }
     [[nodiscard]] const std::shared_ptr<const Device>& device() const { return device_; }
 
   private:
     struct Slot {
-        std::mutex mutex;  // guards bvh
+        InstanceShape shape;  // the largest of all its instances; constant after construction
+        std::mutex mutex;     // guards bvh
         std::weak_ptr<const MeshBvh> bvh;
     };
     const std::shared_ptr<const Device> device_;
     const std::shared_ptr<const map::Map> map_;
     const std::shared_ptr<MeshShelf> shelf_;  // may be none
     const std::uint64_t revision_;
+    const float margin_m_;
     std::vector<Slot> slots_;  // by mesh
 };
 

@@ -4,9 +4,11 @@
 
 #include "bakerd/map/map.h"
 #include "bakerd/trace/geometry.h"
+#include "bakerd/trace/ray.h"
 #include "bakerd/trace/surface.h"
+#include "bakerd/trace/triangle.h"
 
-#include <glm/mat3x3.hpp>
+#include <glm/mat4x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -20,11 +22,7 @@ struct RTCSceneTy;
 
 namespace drtv::trace {
 
-struct Ray {
-    glm::vec3 origin;
-    glm::vec3 direction;  // unit
-    float far_m = 0;      // hits at this distance or less count
-};
+struct Crossing;  // query.h
 
 // A ray a hair's breadth beside this one. Embree's robust test gives an edge one sign for both its triangles, but rounds the
 // edges around a vertex each by itself: of rays aimed exactly at a vertex, some 10 in a million pass between its triangles. Where
@@ -87,26 +85,32 @@ class Scene {
     [[nodiscard]] const map::Object& object_of(const Hit& hit) const { return map_->objects[object_index(hit.instance)]; }
     [[nodiscard]] const map::Map& map() const { return *map_; }
 
+    [[nodiscard]] const glm::mat4x3& world_from_object(std::uint32_t instance) const { return instances_[instance].world_from_object; }
+
     // Embree's scene, for benchmarks that measure what it alone costs.
     [[nodiscard]] RTCSceneTy* embree_scene() const { return handle_; }
 
   private:
-    struct Instance {
+    // One cache line.
+    struct alignas(64) Instance {
+        glm::mat4x3 world_from_object;
+        const MeshBvh* mesh;  // none of one that is kept in world space
         std::uint32_t object;
-        const MeshBvh* mesh;          // none of a large object
-        glm::mat3 world_from_normal;  // cofactors: keeps areas too
+        bool mirrored;
     };
     Scene() = default;
     void add_instance(std::uint32_t object, const MeshBvh& bvh);
-    void add_large(std::uint32_t object, const Region& region, float reach_m);
+    void add_in_world_space(std::uint32_t object, const Region& region, float reach_m);
+    [[nodiscard]] bool meets_front(const Crossing& crossing, const Ray& ray) const;
+    [[nodiscard]] std::vector<Crossing> all_crossings(const Ray& ray) const;
     [[nodiscard]] const TriangleSet& set_of(std::uint32_t instance, std::uint32_t embree_geometry) const;
 
     std::shared_ptr<const Device> device_;
     std::shared_ptr<const map::Map> map_;
     std::vector<std::shared_ptr<const MeshBvh>> meshes_;  // keeps the instanced BVHs alive
     std::vector<Instance> instances_;                     // in the order of the map's objects
-    // Of large objects, what lies within reach, in world space. Their geometry ids follow those of all instances.
-    std::vector<std::unique_ptr<TriangleSet>> large_sets_;
+    // Of large objects, and of those that cannot be instances, what lies within reach, in world space. Their geometry ids follow those of all instances.
+    std::vector<std::unique_ptr<TriangleSet>> world_sets_;
     map::Bounds bounds_;
     RTCSceneTy* handle_ = nullptr;
 };

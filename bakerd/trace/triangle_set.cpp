@@ -1,60 +1,19 @@
 #include "bakerd/trace/triangle_set.h"
 
-#include "bakerd/trace/query.h"
+#include "bakerd/trace/hit_filter.h"
 #include "bakerd/trace/surface.h"
 
 #include <embree3/rtcore.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
 #include <optional>
 #include <tuple>
 
 namespace drtv::trace {
 namespace {
-
-bool lets_through(const RTCFilterFunctionNArguments& args, unsigned ray) {
-    const auto& set = *static_cast<const TriangleSet*>(args.geometryUserPtr);
-    if (!set.mixed) return false;
-    return !is_there(*set.map, *set.primitive, set.triangle_of(RTCHitN_primID(args.hit, args.N, ray)), RTCHitN_u(args.hit, args.N, ray), RTCHitN_v(args.hit, args.N, ray));
-}
-
-// Keeps the closest hit, and of several at the same distance the one of the smallest id: the order in which the BVH
-// offers them does not matter. The limit is left a little behind the hit, because Embree compares undivided
-// distances and could otherwise drop an equal one by rounding.
-void intersect_filter(const RTCFilterFunctionNArguments* args) {
-    assert(args->N == 1);
-    if (args->valid[0] != -1) return;
-    auto& query = *reinterpret_cast<Query*>(args->context);
-    float& limit = RTCRayN_tfar(args->ray, 1, 0);
-    const float distance = limit;
-    TriangleId id{RTCHitN_instID(args->hit, 1, 0, 0), RTCHitN_geomID(args->hit, 1, 0), RTCHitN_primID(args->hit, 1, 0)};
-    const auto& set = *static_cast<const TriangleSet*>(args->geometryUserPtr);
-    if (id.instance == RTC_INVALID_GEOMETRY_ID) id.instance = set.instance;
-    const bool farther = distance > query.best_distance || (distance == query.best_distance && query.best < id);
-    if (farther || lets_through(*args, 0)) {
-        args->valid[0] = 0;
-        return;
-    }
-    if (query.crossings != nullptr) [[unlikely]] {
-        const float facing = RTCRayN_dir_x(args->ray, 1, 0) * RTCHitN_Ng_x(args->hit, 1, 0) + RTCRayN_dir_y(args->ray, 1, 0) * RTCHitN_Ng_y(args->hit, 1, 0) +
-                             RTCRayN_dir_z(args->ray, 1, 0) * RTCHitN_Ng_z(args->hit, 1, 0);
-        query.crossings->push_back({distance, id, set.mirrored ? -facing : facing});
-        args->valid[0] = 0;
-        return;
-    }
-    query.best_distance = distance;
-    query.best = id;
-    limit = distance * (1 + 0x1p-20f);
-}
-
-void occluded_filter(const RTCFilterFunctionNArguments* args) {
-    for (unsigned ray = 0; ray < args->N; ++ray) {
-        if (args->valid[ray] == -1 && lets_through(*args, ray)) args->valid[ray] = 0;
-    }
-}
 
 std::uint64_t position_hash(const glm::vec3& p) {
     std::uint64_t hash = 0;
@@ -161,10 +120,13 @@ void attach(RTCDeviceTy* device, RTCSceneTy* scene, TriangleSet& set, std::uint3
     for (std::uint32_t n = 0; n < count; ++n) {
         const glm::uvec3& t = primitive.triangles[set.triangle_of(n)];
         indices[n] = {number[t.x], number[t.y], number[t.z]};
+        const glm::vec3 &a = vertices[number[t.x]], &b = vertices[number[t.y]], &c = vertices[number[t.z]];
+        set.longest_edge = std::max({set.longest_edge, glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
     }
+    set.longest_edge *= 1 + 0x1p-20f;  // the lengths are rounded
     rtcSetGeometryUserData(geometry, &set);
     rtcSetGeometryIntersectFilterFunction(geometry, intersect_filter);
-    if (set.mixed) rtcSetGeometryOccludedFilterFunction(geometry, occluded_filter);
+    rtcSetGeometryOccludedFilterFunction(geometry, occluded_filter);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, id);
     rtcReleaseGeometry(geometry);

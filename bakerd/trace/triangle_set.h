@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bakerd/map/map.h"
+#include "bakerd/trace/triangle.h"
 
 #include <glm/mat4x3.hpp>
 
@@ -23,7 +24,8 @@ struct TriangleSet {
     std::uint32_t primitive_index = 0;      // in its mesh
     bool mixed = false;                     // there in parts: alpha is looked at, hit by hit
     std::uint32_t instance = UINT32_MAX;    // in its scene; of a set in world space alone
-    bool mirrored = false;                  // likewise: the transform turned its windings round
+    float spread = 1;                       // of its instances, at most (InstanceShape)
+    float longest_edge = 0;                 // of its triangles, in the space of Embree's scene; once attached
     std::vector<std::uint32_t> triangles;   // of the primitive; empty: all of them, in order
     // Of a one-sided set, by its triangle: the one of the same mesh that has the same corners and looks the other way.
     // Thin things are often modelled so. Empty where there are none at all.
@@ -37,6 +39,12 @@ struct TriangleSet {
     [[nodiscard]] std::size_t size() const { return triangles.empty() ? primitive->triangles.size() : triangles.size(); }
     [[nodiscard]] std::uint32_t triangle_of(std::uint32_t n) const { return triangles.empty() ? n : triangles[n]; }
 };
+
+[[nodiscard]] inline ObjectTriangle corners_of(const TriangleSet& set, std::uint32_t triangle_of_set) {
+    const glm::uvec3& t = set.primitive->triangles[set.triangle_of(triangle_of_set)];
+    const std::vector<glm::vec3>& p = set.primitive->positions;
+    return {p[t.x], p[t.y], p[t.z]};
+}
 
 // The sets of a mesh, in the order of its primitives: of each first what is there everywhere, then what is mixed. With
 // `wanted`, of those triangles of a primitive alone for which it holds.

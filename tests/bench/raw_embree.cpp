@@ -46,15 +46,16 @@ std::size_t RawEmbree::trace(std::span<const trace::Ray> closest, std::span<cons
     for (const trace::Ray& ray : closest) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        RTCRayHit r{trace::embree_ray(ray), {}};
-        r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        RTCRayHit r;
+        trace::set_ray(r, ray);
         rtcIntersect1(scene_, &context, &r);
         hits += r.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1u : 0u;
     }
     for (const trace::Ray& ray : shadows) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        RTCRay r = trace::embree_ray(ray);
+        RTCRay r;
+        trace::set_ray(r, ray);
         rtcOccluded1(scene_, &context, &r);
         hits += r.tfar < 0 ? 1u : 0u;
     }

@@ -1,0 +1,87 @@
+// A triangle in the world, and what is asked of it. Embree answers in single precision and by way of the reciprocals that
+// each CPU vendor approximates differently (`rcpps`), so it is only asked which triangles a ray meets. Where it meets them
+// is worked out here from the corners, in double precision, with IEEE operations alone: the same bits on every CPU.
+#pragma once
+
+#include "bakerd/trace/ray.h"
+
+#include <glm/mat4x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace drtv::trace {
+
+// World, metres; counter-clockwise seen from the front unless the transform mirrored.
+struct Triangle {
+    glm::dvec3 a, b, c;
+};
+
+// Corners in object space, as the map has them.
+struct ObjectTriangle {
+    const glm::vec3 &a, &b, &c;
+};
+
+[[nodiscard]] Triangle transformed(const glm::mat4x3& world_from_object, const ObjectTriangle& triangle);
+
+struct Intersection {
+    double distance_m = 0;
+    float u = 0, v = 0;   // barycentric: weights of b and c, within the triangle
+    glm::dvec3 normal{};  // (b - a) x (c - a) in the world
+};
+
+// REQUIRES: Embree's edge tests say that the ray meets the triangle. Where the ray passes an edge so closely that rounding decides,
+// they alone are consistent between the triangles at the edge: so the point is brought inside, and never refused. Nothing when
+// the ray runs exactly in the triangle's plane.
+[[nodiscard]] std::optional<Intersection> intersect(const Ray& ray, const glm::mat4x3& world_from_object, const ObjectTriangle& triangle);
+
+// How far from the origin of the world the coordinates reach in which a ray starts, metres: Embree rounds these.
+[[nodiscard]] inline float coordinate_m(const Ray& ray) { return std::max({std::abs(ray.origin.x), std::abs(ray.origin.y), std::abs(ray.origin.z)}); }
+
+// How far beyond a limit Embree is asked to look, metres. Grows with the distance.
+[[nodiscard]] inline float query_slack(const Ray& ray, float distance_m) { return distance_m * 0x1p-10f + (coordinate_m(ray) + 256) * 0x1p-18f; }
+
+// A hit in the space in which Embree finds it: that of the object, for an instance.
+struct EmbreeHit {
+    float distance_m;     // in the world
+    glm::vec3 direction;  // of the ray; its length is that of a metre of the world
+    glm::vec3 normal;     // not unit
+    float longest_edge;   // at least that of the triangle
+    float spread;         // InstanceShape
+};
+
+// The numbers that Embree rounds on its way to a distance, times their rounding: its error, but for the grazing angle.
+[[nodiscard]] inline float embree_rounding(const Ray& ray, const EmbreeHit& hit) {
+    // Checked by Triangle.EmbreeErrsByLessThanItsBound; a single rounding is an eighth of this.
+    constexpr float roundings = 0x1p-21f;
+    const float speed = std::abs(hit.direction.x) + std::abs(hit.direction.y) + std::abs(hit.direction.z);
+    return (hit.distance_m * speed + hit.longest_edge + (coordinate_m(ray) + hit.distance_m) * hit.spread * speed) * roundings;
+}
+
+// By this, metres, hits are compared, and the ends of rays are held against it: the distance, but for a ray that grazes the triangle
+// so flatly that Embree may be off by more than query_slack. Then it is so much more that Embree cannot have missed the
+// hit: whether a hit is found does not depend on which other hits were found before it.
+[[nodiscard]] float order_of(const Intersection& at, const Ray& ray, const EmbreeHit& hit);
+
+// Whether the distance that Embree gives is right within half of query_slack, so that order_of is the distance. Not where the
+// normal may be no more than rounding: of a triangle that is far away for its size, and seen from the side.
+[[nodiscard]] inline bool is_sure(const Ray& ray, const EmbreeHit& hit) {
+    const auto dot = [](const glm::vec3& a, const glm::vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
+    const float rounding = embree_rounding(ray, hit), facing = std::abs(dot(hit.normal, hit.direction));
+    const float allowed = query_slack(ray, hit.distance_m) * 0.5f * facing;
+    // Squares, without root and division.
+    return rounding * rounding * dot(hit.normal, hit.normal) <= allowed * allowed && rounding * 8 * hit.longest_edge <= facing;
+}
+
+// Height of the triangle's plane at a point inside its plan, from its corners alone: the distance along a line of
+// kilometres would have lost the digits. Nothing for a vertical triangle.
+[[nodiscard]] std::optional<double> height_at(const Triangle& triangle, glm::vec2 at);
+
+// From a point to the nearest one of the triangle.
+[[nodiscard]] double distance_to(const Triangle& triangle, const glm::dvec3& point);
+
+}  // namespace drtv::trace
