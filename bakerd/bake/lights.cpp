@@ -1,5 +1,6 @@
 #include "bakerd/bake/lights.h"
 
+#include "bakerd/map/cos_sin.h"
 #include "bakerd/map/texture.h"
 
 #include <glm/geometric.hpp>
@@ -24,7 +25,7 @@ PointLight point_light(const map::Light& light) {
     point.intensity = radiometric(light.colour * light.intensity);
     point.range_m = light.range_m;
     if (light.kind == map::LightKind::spot) {
-        const double outer = std::cos(static_cast<double>(light.outer_cone_radians)), inner = std::cos(static_cast<double>(light.inner_cone_radians));
+        const double outer = map::cos_sin(static_cast<double>(light.outer_cone_radians)).x, inner = map::cos_sin(static_cast<double>(light.inner_cone_radians)).x;
         point.direction = light.direction;
         point.cone_scale = static_cast<float>(1 / std::max(0.001, inner - outer));
         point.cone_offset = static_cast<float>(-outer) * point.cone_scale;

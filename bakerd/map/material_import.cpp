@@ -1,5 +1,6 @@
 #include "bakerd/map/import_parts.h"
 
+#include "bakerd/map/cos_sin.h"
 #include "bakerd/map/texture.h"
 
 #include <fmt/format.h>
@@ -34,9 +35,9 @@ tl::expected<void, std::string> apply_texture_transform(const tinygltf::Value& e
     read_pair("offset", offset);
     read_pair("scale", scale);
     const double rotation = extension.Has("rotation") ? extension.Get("rotation").GetNumberAsDouble() : 0;
-    const double c = std::cos(rotation), s = std::sin(rotation);
-    view.u_from_uv = glm::vec3(glm::dvec3(c * scale.x, s * scale.y, offset.x));
-    view.v_from_uv = glm::vec3(glm::dvec3(-s * scale.x, c * scale.y, offset.y));
+    const glm::dvec2 turned = cos_sin(rotation);
+    view.u_from_uv = glm::vec3(glm::dvec3(turned.x * scale.x, turned.y * scale.y, offset.x));
+    view.v_from_uv = glm::vec3(glm::dvec3(-turned.y * scale.x, turned.x * scale.y, offset.y));
     for (const glm::vec3& row : {view.u_from_uv, view.v_from_uv}) {
         for (glm::length_t k = 0; k < 3; ++k) {
             if (!(std::abs(row[k]) <= max_transform)) return tl::unexpected(fmt::format("KHR_texture_transform: {} is over the limit of {}", row[k], max_transform));
