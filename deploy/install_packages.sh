@@ -10,7 +10,7 @@ packages=(
   protobuf-compiler protobuf-compiler-grpc
 )
 if [[ "${1:-}" == "--tests" ]]; then
-  packages+=(clang-14 libbenchmark-dev libclang-rt-14-dev libgmock-dev libgtest-dev libxxhash-dev python3-jsonschema util-linux)
+  packages+=(clang-14 libbenchmark-dev libclang-rt-14-dev libgmock-dev libgtest-dev libxxhash-dev python3-jsonschema qemu-user util-linux)
 fi
 
 missing=()
