@@ -75,7 +75,7 @@ struct Window {
 };
 
 Window window_of(const glm::vec3& from, const Bounds& box) {
-    constexpr float rounding = 1e-4f;
+    constexpr float rounding = 1e-4f;  // far more than what C libraries make of an arc tangent
     const glm::vec3 low = box.low - from, high = box.high - from;
     const glm::vec2 nearest(std::max({low.x, -high.x, 0.0f}), std::max({low.y, -high.y, 0.0f}));
     const glm::vec2 farthest(std::max(std::abs(low.x), std::abs(high.x)), std::max(std::abs(low.y), std::abs(high.y)));

@@ -4,10 +4,6 @@
 #include "bakerd/trace/scene.h"
 #include "bakerd/trace/surface.h"
 
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
-
 #include <cassert>
 #include <limits>
 #include <optional>
@@ -27,26 +23,26 @@ EmbreeHit embree_hit(const RTCFilterFunctionNArguments& args, const TriangleSet&
             {RTCRayN_dir_x(args.ray, size, n), RTCRayN_dir_y(args.ray, size, n), RTCRayN_dir_z(args.ray, size, n)},
             {RTCHitN_Ng_x(args.hit, size, n), RTCHitN_Ng_y(args.hit, size, n), RTCHitN_Ng_z(args.hit, size, n)},
             set.longest_edge,
+            set.farthest_coordinate,
             set.spread};
 }
 
-// The same from exact numbers, so that nothing of it is Embree's.
-EmbreeHit exact_hit(const Intersection& at, const Ray& ray, const glm::mat4x3& world_from_object, const TriangleSet& set, const ObjectTriangle& corners) {
-    EmbreeHit hit{static_cast<float>(at.distance_m), ray.direction, glm::vec3(at.normal), set.longest_edge, set.spread};
-    if (set.instance == UINT32_MAX) {
-        const glm::dvec3 a(corners.a);
-        hit.direction = glm::inverse(glm::dmat3(glm::mat3(world_from_object))) * glm::dvec3(ray.direction);
-        hit.normal = glm::cross(glm::dvec3(corners.b) - a, glm::dvec3(corners.c) - a);
-    }
-    return hit;
-}
-
-// Works the intersection out.
+// Works the intersection out; what is met nowhere lies infinitely far.
 void resolve(Candidate& hit, const Query& query, const Ray& ray) {
     const glm::mat4x3& world_from_object = query.scene.world_from_object(hit.id.instance);
     const ObjectTriangle corners = corners_of(*hit.set, hit.id.triangle);
     hit.at = intersect(ray, world_from_object, corners);
-    hit.least_m = hit.most_m = hit.at ? order_of(*hit.at, ray, exact_hit(*hit.at, ray, world_from_object, *hit.set, corners)) : std::numeric_limits<float>::infinity();
+    hit.least_m = hit.most_m = std::numeric_limits<float>::infinity();
+    if (!hit.at) return;
+    const bool in_world_space = hit.set->instance != UINT32_MAX;
+    if (in_world_space) {
+        const Triangle world = transformed(world_from_object, corners);
+        const glm::vec3 a(world.a), b(world.b), c(world.c);
+        hit.least_m = order_of(*hit.at, ray, glm::mat4x3(1), {a, b, c});
+    } else {
+        hit.least_m = order_of(*hit.at, ray, world_from_object, corners);
+    }
+    hit.most_m = hit.least_m;
 }
 
 bool is_there(const Candidate& hit) { return !hit.set->mixed || trace::is_there(*hit.set->map, *hit.set->primitive, hit.set->triangle_of(hit.id.triangle), hit.at->u, hit.at->v); }
@@ -96,7 +92,7 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
     Candidate hit{id, &set, 0, 0, {}};
     resolve(hit, query, ray);
     if (query.best.set != nullptr && !query.best.at) resolve(query.best, query, ray);
-    if (!is_nearer(hit, query.best) || !is_there(hit)) return;
+    if (!hit.at || !is_nearer(hit, query.best) || !is_there(hit)) return;
     query.best = hit;
     accept(*args, ray, hit.most_m);
 }
@@ -114,7 +110,7 @@ void occluded_filter(const RTCFilterFunctionNArguments* args) {
         }
         Candidate hit{id, &set, 0, 0, {}};
         resolve(hit, query, ray);
-        if (!(hit.most_m <= ray.far_m) || !is_there(hit)) args->valid[n] = 0;
+        if (!hit.at || hit.most_m > ray.far_m || !is_there(hit)) args->valid[n] = 0;
     }
 }
 

@@ -12,7 +12,10 @@ namespace drtv::trace {
 
 float instance_margin_m(const map::Map& map) {
     glm::vec3 farthest(1);
-    for (const map::Object& object : map.objects) farthest = glm::max(farthest, glm::max(glm::abs(object.bounds.low), glm::abs(object.bounds.high)));
+    for (const map::Object& object : map.objects) {
+        farthest = glm::max(farthest, glm::max(glm::abs(object.bounds.low), glm::abs(object.bounds.high)));
+        farthest = glm::max(farthest, glm::abs(object.world_from_object[3]));  // a mesh may lie far from its own origin
+    }
     for (const map::ManualProbe& probe : map.probes) farthest = glm::max(farthest, glm::vec3(glm::abs(probe.position)));
     const float extent_m = std::max({farthest.x, farthest.y, farthest.z});
     // With unit roundoff e = 2^-24 and rays between any two points of the map: 2 reciprocals off by 5 e and the product of origin

@@ -19,33 +19,50 @@ namespace drtv::trace {
 
 class Scene;
 
-// Where a ray starts for Embree: moved by some roundings where it runs along an axis. Such rays start on the lattice to which kits
-// are snapped, and of one that runs along the side of a box with the larger coordinates Embree says that it leaves the box at once; what
-// touches there may be turned, so that this is its larger side as well, or rounded away by its transform. It matters to which triangles are
-// found, not to where they are met.
-[[nodiscard]] inline float off_lattice(float origin, float direction) {
-    constexpr float along_axis = 0x1p-20f;
-    return std::abs(direction) > along_axis ? origin : origin - std::copysign((std::abs(origin) + 64) * 0x1p-22f, origin);
-}
+// A ray along an axis starts, and goes on, on the lattice to which kits are snapped. Of one that runs along the side of a box with the
+// larger coordinates Embree says that it leaves the box at once; what touches there may be turned, so that this is its larger side
+// as well, or be moved by rounding. So such rays are asked for some roundings to both sides of the line. This decides which triangles are
+// found, not where they are met.
+struct Sides {
+    int count = 1;             // 1, 2 or 4: neighbours of the line to ask for
+    glm::vec3 step_m{0};       // from the line, along the axes to which it is parallel; otherwise 0
+
+    explicit Sides(const Ray& ray) {
+        constexpr float along_axis = 0x1p-20f;
+        for (glm::length_t k = 0; k < 3; ++k) {
+            if (std::abs(ray.direction[k]) > along_axis) continue;
+            step_m[k] = (std::abs(ray.origin[k]) + 64) * 0x1p-22f;
+            count *= 2;
+        }
+    }
+    [[nodiscard]] glm::vec3 origin(const Ray& ray, int side) const {
+        if (count == 1) return ray.origin;
+        glm::vec3 moved = ray.origin;
+        for (glm::length_t k = 0, bit = 0; k < 3; ++k) {
+            if (step_m[k] > 0) moved[k] += (side >> bit++ & 1) == 0 ? step_m[k] : -step_m[k];
+        }
+        return moved;
+    }
+};
 
 // Both are filled in place: a copy of what was just written number by number waits for all of it.
-inline void set_ray(RTCRay& r, const Ray& ray, unsigned id = 0) {
-    r.org_x = off_lattice(ray.origin.x, ray.direction.x);
-    r.org_y = off_lattice(ray.origin.y, ray.direction.y);
-    r.org_z = off_lattice(ray.origin.z, ray.direction.z);
+inline void set_ray(RTCRay& r, const glm::vec3& origin, const glm::vec3& direction, float far_m, unsigned id = 0) {
+    r.org_x = origin.x;
+    r.org_y = origin.y;
+    r.org_z = origin.z;
     r.tnear = 0;
-    r.dir_x = ray.direction.x;
-    r.dir_y = ray.direction.y;
-    r.dir_z = ray.direction.z;
+    r.dir_x = direction.x;
+    r.dir_y = direction.y;
+    r.dir_z = direction.z;
     r.time = 0;
-    r.tfar = ray.far_m + query_slack(ray, ray.far_m);
+    r.tfar = far_m;
     r.mask = ~0u;
     r.id = id;
     r.flags = 0;
 }
 
-inline void set_ray(RTCRayHit& r, const Ray& ray) {
-    set_ray(r.ray, ray);
+inline void set_ray(RTCRayHit& r, const glm::vec3& origin, const glm::vec3& direction, float far_m) {
+    set_ray(r.ray, origin, direction, far_m);
     r.hit.geomID = r.hit.primID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 }
 

@@ -37,6 +37,7 @@ void turn_to_twin(const TriangleSet::Twin& twin, Hit& hit) {
     of_twin[twin.first] = weights[0];
     of_twin[(twin.first + 2u) % 3] = weights[1];
     of_twin[(twin.first + 1u) % 3] = weights[2];
+    hit.set = nullptr;
     hit.primitive = twin.primitive;
     hit.triangle = twin.triangle;
     hit.u = of_twin[1];
@@ -83,7 +84,7 @@ void Scene::add_instance(std::uint32_t object, const MeshBvh& bvh) {
     rtcCommitGeometry(instance);
     rtcAttachGeometryByID(handle_, instance, static_cast<unsigned>(instances_.size()));
     rtcReleaseGeometry(instance);
-    instances_.push_back({world_from_object, &bvh, object, mirrors(world_from_object)});
+    instances_.push_back({world_from_object, &bvh, object, map_->objects[object].role, mirrors(world_from_object)});
 }
 
 void Scene::add_in_world_space(std::uint32_t object, const Region& region, float reach_m) {
@@ -99,7 +100,7 @@ void Scene::add_in_world_space(std::uint32_t object, const Region& region, float
         attach(device_->handle(), handle_, *set, static_cast<std::uint32_t>(map_->objects.size() + world_sets_.size()), placed.world_from_object);
         world_sets_.push_back(std::move(set));
     }
-    instances_.push_back({placed.world_from_object, nullptr, object, mirrors(placed.world_from_object)});
+    instances_.push_back({placed.world_from_object, nullptr, object, placed.role, mirrors(placed.world_from_object)});
 }
 
 const TriangleSet& Scene::set_of(std::uint32_t instance, std::uint32_t embree_geometry) const {
@@ -114,9 +115,12 @@ Scene::~Scene() {
 std::optional<Hit> Scene::closest(const Ray& ray) const {
     Query query(*this, {&ray, 1});
     query.best.least_m = query.best.most_m = ray.far_m;
-    RTCRayHit r;
-    set_ray(r, ray);
-    rtcIntersect1(handle_, &query.base, &r);
+    const Sides sides(ray);
+    for (int side = 0; side < sides.count; ++side) {
+        RTCRayHit r;
+        set_ray(r, sides.origin(ray, side), ray.direction, query.best.most_m + query_slack(ray, query.best.most_m));
+        rtcIntersect1(handle_, &query.base, &r);
+    }
     if (query.best.set == nullptr) return std::nullopt;
     const TriangleId& id = query.best.id;
     const TriangleSet& set = *query.best.set;
@@ -125,7 +129,7 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
     const bool front = meets_front({id, at}, ray);
     const double double_area_m2 = glm::length(at.normal), towards = glm::dot(at.normal, glm::dvec3(ray.direction)) < 0 ? 1 : -1;
     Hit hit{static_cast<float>(at.distance_m), id.instance, set.primitive_index, set.triangle_of(id.triangle), at.u, at.v, front,
-            glm::vec3(at.normal * (towards / double_area_m2)), static_cast<float>(double_area_m2)};
+            glm::vec3(at.normal * (towards / double_area_m2)), static_cast<float>(double_area_m2), &set};
     if (!front && !set.twins.empty() && set.twins[id.triangle].present()) turn_to_twin(set.twins[id.triangle], hit);
     return hit;
 }
@@ -140,11 +144,14 @@ std::vector<Crossing> Scene::all_crossings(const Ray& ray) const {
     std::vector<Crossing> crossings;
     Query query(*this, {&ray, 1});
     query.crossings = &crossings;
-    RTCRayHit r;
-    set_ray(r, ray);
     // Of a short piece of a ray that grazes a surface too, Embree's error must not lose the hit.
-    r.ray.tfar += 1;
-    rtcIntersect1(handle_, &query.base, &r);
+    const float far_m = ray.far_m + query_slack(ray, ray.far_m) + 1;
+    const Sides sides(ray);
+    for (int side = 0; side < sides.count; ++side) {
+        RTCRayHit r;
+        set_ray(r, sides.origin(ray, side), ray.direction, far_m);
+        rtcIntersect1(handle_, &query.base, &r);
+    }
     std::ranges::sort(crossings, {}, &Crossing::id);
     const auto again = std::ranges::unique(crossings, {}, &Crossing::id);
     crossings.erase(again.begin(), again.end());
@@ -159,8 +166,11 @@ Ray beside(const Ray& ray) {
 }
 
 Surface Scene::surface(const Hit& hit, float footprint_m) const {
-    const map::Object& object = object_of(hit);
-    return surface_at(*map_, map_->meshes[object.mesh].primitives[hit.primitive], object.role, hit.triangle, hit.u, hit.v, hit.front, hit.double_area_m2, footprint_m);
+    const map::Role role = instances_[hit.instance].role;
+    const auto of = [&](const map::Map& map, const map::Primitive& primitive) { return surface_at(map, primitive, role, hit.triangle, hit.u, hit.v, hit.front, hit.double_area_m2, footprint_m); };
+    // What the hit knows already is not looked up again: in a large map that is far away in memory.
+    if (hit.set != nullptr) return of(*hit.set->map, *hit.set->primitive);
+    return of(*map_, map_->meshes[object_of(hit).mesh].primitives[hit.primitive]);
 }
 
 void Scene::occluded(std::span<const Ray> rays, std::vector<bool>& answers) const {
@@ -168,10 +178,10 @@ void Scene::occluded(std::span<const Ray> rays, std::vector<bool>& answers) cons
     query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     thread_local std::vector<RTCRay> stream;
     stream.resize(rays.size());
-    for (std::size_t n = 0; n < rays.size(); ++n) set_ray(stream[n], rays[n], static_cast<unsigned>(n));
+    for (std::size_t n = 0; n < rays.size(); ++n) set_ray(stream[n], rays[n].origin, rays[n].direction, rays[n].far_m + query_slack(rays[n], rays[n].far_m), static_cast<unsigned>(n));
     rtcOccluded1M(handle_, &query.base, stream.data(), static_cast<unsigned>(stream.size()), sizeof(RTCRay));
     answers.clear();
-    for (const RTCRay& ray : stream) answers.push_back(ray.tfar < 0);
+    for (std::size_t n = 0; n < rays.size(); ++n) answers.push_back(stream[n].tfar < 0 || (Sides(rays[n]).count > 1 && occluded(rays[n])));
 }
 
 std::size_t Scene::crossings(const Ray& ray) const {
@@ -192,10 +202,14 @@ std::size_t Scene::crossings(const Ray& ray) const {
 
 bool Scene::occluded(const Ray& ray) const {
     Query query(*this, {&ray, 1});
-    RTCRay r;
-    set_ray(r, ray);
-    rtcOccluded1(handle_, &query.base, &r);
-    return r.tfar < 0;
+    const Sides sides(ray);
+    for (int side = 0; side < sides.count; ++side) {
+        RTCRay r;
+        set_ray(r, sides.origin(ray, side), ray.direction, ray.far_m + query_slack(ray, ray.far_m));
+        rtcOccluded1(handle_, &query.base, &r);
+        if (r.tfar < 0) return true;
+    }
+    return false;
 }
 
 void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
@@ -217,23 +231,24 @@ void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
 float Scene::distance_to_surface(const glm::vec3& point, float most_m) const {
     struct Search {
         const Scene& scene;
+        Ray from;  // for its start
         glm::dvec3 point;
         float nearest_m;
     };
-    Search search{*this, point, most_m};
-    RTCPointQuery query{point.x, point.y, point.z, 0, most_m};
+    Search search{*this, {point, {}, 0}, point, most_m};
+    // Embree rounds: of two that are about as near it must offer both.
+    RTCPointQuery query{point.x, point.y, point.z, 0, most_m + query_slack(search.from, most_m)};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     const auto look = [](RTCPointQueryFunctionArguments* found) {
-        auto& [scene, at, nearest_m] = *static_cast<Search*>(found->userPtr);
+        auto& [scene, from, at, nearest_m] = *static_cast<Search*>(found->userPtr);
         std::uint32_t instance = found->context->instID[0];
         if (found->context->instStackSize == 0) instance = scene.world_sets_[found->geomID - scene.map_->objects.size()]->instance;
         else if (scene.instances_[instance].mesh->is_margin(found->geomID)) return false;
         const auto distance_m = static_cast<float>(distance_to(transformed(scene.instances_[instance].world_from_object, corners_of(scene.set_of(instance, found->geomID), found->primID)), at));
         if (!(distance_m < nearest_m)) return false;
         nearest_m = distance_m;
-        // Embree rounds: of two that are about as near it must offer both.
-        found->query->radius = distance_m * (1 + 0x1p-10f) + 0x1p-10f;
+        found->query->radius = distance_m + query_slack(from, distance_m);
         return true;
     };
     rtcPointQuery(handle_, &query, &context, look, &search);

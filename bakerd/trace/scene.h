@@ -38,6 +38,7 @@ struct Hit {
     bool front = false;           // the ray met the counter-clockwise side
     glm::vec3 normal{};           // unit, world, on the ray's side
     float double_area_m2 = 0;     // twice the triangle's area in the world
+    const TriangleSet* set = nullptr;  // of the triangle, where it was not found by its twin
 };
 
 // One crossing of a vertical line with a static object.
@@ -96,6 +97,7 @@ class Scene {
         glm::mat4x3 world_from_object;
         const MeshBvh* mesh;  // none of one that is kept in world space
         std::uint32_t object;
+        map::Role role;
         bool mirrored;
     };
     Scene() = default;

@@ -1,6 +1,9 @@
 #include "bakerd/trace/triangle.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +16,11 @@ using Double4 = double __attribute__((vector_size(32)));
 
 Double4 four(const glm::vec3& v) { return Double4{double{v.x}, double{v.y}, double{v.z}, 0}; }
 
-struct Corners {
+struct WorldCorners {
     Double4 a, b, c;
 };
 
-Corners corners_of(const glm::mat4x3& world_from_object, const ObjectTriangle& triangle) {
+WorldCorners in_world(const glm::mat4x3& world_from_object, const ObjectTriangle& triangle) {
     const Double4 x = four(world_from_object[0]), y = four(world_from_object[1]), z = four(world_from_object[2]), origin = four(world_from_object[3]);
     const auto corner = [&](const glm::vec3& p) { return (x * double{p.x} + y * double{p.y}) + (z * double{p.z} + origin); };
     return {corner(triangle.a), corner(triangle.b), corner(triangle.c)};
@@ -43,13 +46,13 @@ double square(double x) { return x * x; }
 }  // namespace
 
 Triangle transformed(const glm::mat4x3& world_from_object, const ObjectTriangle& triangle) {
-    const Corners corners = corners_of(world_from_object, triangle);
+    const WorldCorners corners = in_world(world_from_object, triangle);
     const auto three = [](const Double4& v) { return glm::dvec3(v[0], v[1], v[2]); };
     return {three(corners.a), three(corners.b), three(corners.c)};
 }
 
 std::optional<Intersection> intersect(const Ray& ray, const glm::mat4x3& world_from_object, const ObjectTriangle& triangle) {
-    const Corners corners = corners_of(world_from_object, triangle);
+    const WorldCorners corners = in_world(world_from_object, triangle);
     const Double4 direction = four(ray.direction), a = corners.a - four(ray.origin), ab = corners.b - corners.a, ac = corners.c - corners.a;
     const Double4 normal = cross(ab, ac), moment = cross(a, direction);
     const Double4 products = sums(normal * direction, normal * a, ac * moment, ab * moment);
@@ -72,10 +75,21 @@ std::optional<Intersection> intersect(const Ray& ray, const glm::mat4x3& world_f
     return found;
 }
 
-float order_of(const Intersection& at, const Ray& ray, const EmbreeHit& hit) {
-    const glm::dvec3 normal(hit.normal);
-    const double error_m = static_cast<double>(embree_rounding(ray, hit)) * glm::length(normal) / std::abs(glm::dot(normal, glm::dvec3(hit.direction)));
-    return static_cast<float>(at.distance_m + std::max(error_m - static_cast<double>(query_slack(ray, hit.distance_m)), 0.0));
+float order_of(const Intersection& at, const Ray& ray, const glm::mat4x3& world_from_space, const ObjectTriangle& triangle) {
+    const double slack_m = static_cast<double>(query_slack(ray, static_cast<float>(at.distance_m)));
+    const glm::dmat3 space_from_world = glm::inverse(glm::dmat3(glm::mat3(world_from_space)));
+    const glm::dvec3 a(triangle.a), b(triangle.b), c(triangle.c), normal = glm::abs(glm::cross(b - a, c - a));
+    const double facing = std::abs(glm::dot(glm::cross(b - a, c - a), space_from_world * glm::dvec3(ray.direction)));
+    // Along each axis of the space the transform rounds coordinates of the world, and the test those of the corners.
+    const glm::dvec3 translation = glm::abs(glm::dvec3(world_from_space[3])), corners = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
+    const double world_m = static_cast<double>(coordinate_m(ray)) + at.distance_m + std::max({translation.x, translation.y, translation.z});
+    double error = 0;
+    for (glm::length_t k = 0; k < 3; ++k) {
+        const double row = std::abs(space_from_world[0][k]) + std::abs(space_from_world[1][k]) + std::abs(space_from_world[2][k]);
+        error += normal[k] * (world_m * row + corners[k] + glm::distance(a, b) + glm::distance(b, c));
+    }
+    const double error_m = error * static_cast<double>(embree_rounding) / facing;
+    return static_cast<float>(at.distance_m + std::max(error_m - slack_m, 0.0));
 }
 
 std::optional<double> height_at(const Triangle& triangle, glm::vec2 at) {

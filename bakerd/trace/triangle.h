@@ -39,42 +39,41 @@ struct Intersection {
 // the ray runs exactly in the triangle's plane.
 [[nodiscard]] std::optional<Intersection> intersect(const Ray& ray, const glm::mat4x3& world_from_object, const ObjectTriangle& triangle);
 
-// How far from the origin of the world the coordinates reach in which a ray starts, metres: Embree rounds these.
-[[nodiscard]] inline float coordinate_m(const Ray& ray) { return std::max({std::abs(ray.origin.x), std::abs(ray.origin.y), std::abs(ray.origin.z)}); }
+// How far from the origin of the world the coordinates of the start reach, metres, and some more for rays near it.
+[[nodiscard]] inline float coordinate_m(const Ray& ray) { return std::max({std::abs(ray.origin.x), std::abs(ray.origin.y), std::abs(ray.origin.z)}) + 64; }
 
 // How far beyond a limit Embree is asked to look, metres. Grows with the distance.
-[[nodiscard]] inline float query_slack(const Ray& ray, float distance_m) { return distance_m * 0x1p-10f + (coordinate_m(ray) + 256) * 0x1p-18f; }
+[[nodiscard]] inline float query_slack(const Ray& ray, float distance_m) { return distance_m * 0x1p-12f + coordinate_m(ray) * 0x1p-16f; }
 
-// A hit in the space in which Embree finds it: that of the object, for an instance.
+// What Embree's errors are counted in: some of its roundings.
+inline constexpr float embree_rounding = 0x1p-22f;
+
+// By this, metres, hits are compared, and the ends of rays are held against it: the distance; but of a ray that grazes the triangle so
+// flatly that Embree's distance could lie beyond it by more than query_slack, so much more that it does not. So a limit of order and slack
+// never hides a hit of a lower order: it is found whatever was found before. (But for triangles whose normal is mere rounding in
+// single precision: far away for their size, and seen from the side.)
+[[nodiscard]] float order_of(const Intersection& at, const Ray& ray, const glm::mat4x3& world_from_space, const ObjectTriangle& triangle);
+
+// A hit as Embree offers it, in the space in which it finds it: that of the object, for an instance.
 struct EmbreeHit {
-    float distance_m;     // in the world
-    glm::vec3 direction;  // of the ray; its length is that of a metre of the world
-    glm::vec3 normal;     // not unit
-    float longest_edge;   // at least that of the triangle
-    float spread;         // InstanceShape
+    float distance_m;           // in the world
+    glm::vec3 direction;        // of the ray; its length is that of a metre of the world
+    glm::vec3 normal;           // not unit
+    float longest_edge;         // at least that of the triangle
+    float farthest_coordinate;  // at least that of its corners
+    float spread;               // InstanceShape
 };
 
-// The numbers that Embree rounds on its way to a distance, times their rounding: its error, but for the grazing angle.
-[[nodiscard]] inline float embree_rounding(const Ray& ray, const EmbreeHit& hit) {
-    // Checked by Triangle.EmbreeErrsByLessThanItsBound; a single rounding is an eighth of this.
-    constexpr float roundings = 0x1p-21f;
-    const float speed = std::abs(hit.direction.x) + std::abs(hit.direction.y) + std::abs(hit.direction.z);
-    return (hit.distance_m * speed + hit.longest_edge + (coordinate_m(ray) + hit.distance_m) * hit.spread * speed) * roundings;
-}
-
-// By this, metres, hits are compared, and the ends of rays are held against it: the distance, but for a ray that grazes the triangle
-// so flatly that Embree may be off by more than query_slack. Then it is so much more that Embree cannot have missed the
-// hit: whether a hit is found does not depend on which other hits were found before it.
-[[nodiscard]] float order_of(const Intersection& at, const Ray& ray, const EmbreeHit& hit);
-
-// Whether the distance that Embree gives is right within half of query_slack, so that order_of is the distance. Not where the
-// normal may be no more than rounding: of a triangle that is far away for its size, and seen from the side.
+// Whether the distance that Embree gives is right within half of query_slack, so that order_of is the distance. A bound for all
+// triangles of a set, from what is at hand; coarse where the transform stretches.
 [[nodiscard]] inline bool is_sure(const Ray& ray, const EmbreeHit& hit) {
     const auto dot = [](const glm::vec3& a, const glm::vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
-    const float rounding = embree_rounding(ray, hit), facing = std::abs(dot(hit.normal, hit.direction));
-    const float allowed = query_slack(ray, hit.distance_m) * 0.5f * facing;
-    // Squares, without root and division.
-    return rounding * rounding * dot(hit.normal, hit.normal) <= allowed * allowed && rounding * 8 * hit.longest_edge <= facing;
+    const float speed = std::abs(hit.direction.x) + std::abs(hit.direction.y) + std::abs(hit.direction.z);
+    const float transformed = 2 * hit.spread * ((coordinate_m(ray) + hit.distance_m) * speed + hit.farthest_coordinate);
+    const float error = (hit.distance_m * speed + hit.longest_edge + transformed) * embree_rounding;
+    const float facing = std::abs(dot(hit.normal, hit.direction)), allowed = query_slack(ray, hit.distance_m) * 0.5f * facing;
+    // Squares, without root and division. The normal itself must be more than rounding.
+    return error * error * dot(hit.normal, hit.normal) <= allowed * allowed && error * 8 * hit.longest_edge <= facing;
 }
 
 // Height of the triangle's plane at a point inside its plan, from its corners alone: the distance along a line of

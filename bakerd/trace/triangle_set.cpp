@@ -4,6 +4,7 @@
 #include "bakerd/trace/surface.h"
 
 #include <embree3/rtcore.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -120,6 +121,10 @@ void attach(RTCDeviceTy* device, RTCSceneTy* scene, TriangleSet& set, std::uint3
     for (std::uint32_t n = 0; n < count; ++n) {
         const glm::uvec3& t = primitive.triangles[set.triangle_of(n)];
         indices[n] = {number[t.x], number[t.y], number[t.z]};
+        for (glm::length_t k = 0; k < 3; ++k) {
+            const glm::vec3 corner = glm::abs(vertices[indices[n][k]]);
+            set.farthest_coordinate = std::max({set.farthest_coordinate, corner.x, corner.y, corner.z});
+        }
         const glm::vec3 &a = vertices[number[t.x]], &b = vertices[number[t.y]], &c = vertices[number[t.z]];
         set.longest_edge = std::max({set.longest_edge, glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
     }

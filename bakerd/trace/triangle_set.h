@@ -1,4 +1,4 @@
-// Triangles as Embree gets them, and the filters that decide which of their hits count.
+// Triangles as Embree gets them.
 #pragma once
 
 #include "bakerd/map/map.h"
@@ -25,7 +25,8 @@ struct TriangleSet {
     bool mixed = false;                     // there in parts: alpha is looked at, hit by hit
     std::uint32_t instance = UINT32_MAX;    // in its scene; of a set in world space alone
     float spread = 1;                       // of its instances, at most (InstanceShape)
-    float longest_edge = 0;                 // of its triangles, in the space of Embree's scene; once attached
+    // Of its triangles, in the space of Embree's scene; once attached.
+    float longest_edge = 0, farthest_coordinate = 0;
     std::vector<std::uint32_t> triangles;   // of the primitive; empty: all of them, in order
     // Of a one-sided set, by its triangle: the one of the same mesh that has the same corners and looks the other way.
     // Thin things are often modelled so. Empty where there are none at all.

@@ -47,7 +47,7 @@ std::size_t RawEmbree::trace(std::span<const trace::Ray> closest, std::span<cons
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         RTCRayHit r;
-        trace::set_ray(r, ray);
+        trace::set_ray(r, ray.origin, ray.direction, ray.far_m);
         rtcIntersect1(scene_, &context, &r);
         hits += r.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1u : 0u;
     }
@@ -55,7 +55,7 @@ std::size_t RawEmbree::trace(std::span<const trace::Ray> closest, std::span<cons
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         RTCRay r;
-        trace::set_ray(r, ray);
+        trace::set_ray(r, ray.origin, ray.direction, ray.far_m);
         rtcOccluded1(scene_, &context, &r);
         hits += r.tfar < 0 ? 1u : 0u;
     }

@@ -54,7 +54,8 @@ Shape hills(std::mt19937& random) {
 }
 
 // Tiles of a kit on their lattice, things of every size and turn, copies in one place, a terrain that is no instance, leaves cut out by alpha.
-std::vector<Thing> all_sorts(std::mt19937& random) {
+// `place` is their middle.
+std::vector<Thing> all_sorts(std::mt19937& random, const glm::vec3& place) {
     std::vector<Thing> things = {thing_of(hills(random))};
     for (int n = 0; n < 16; ++n) {
         things.push_back(thing_of(quad({0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0})));
@@ -74,6 +75,12 @@ std::vector<Thing> all_sorts(std::mt19937& random) {
         things.back().material.mask_cutoff = 0.5;
         things.back().world_from_shape = random_placement(random, 20, false);
     }
+    for (int n = 0; n < 6; ++n) {
+        // Planks and panels, off their own origin.
+        things.push_back(thing_of(box({40, -1, -1}, {42, 1, 1}), glm::vec3(0.6f)));
+        things.back().world_from_shape = random_placement(random, 20, false) * glm::scale(glm::dmat4(1), glm::dvec3(n % 2 == 0 ? 6 : 0.1, 0.1, 3)) * glm::translate(glm::dmat4(1), glm::dvec3(-41, 0, 0));
+    }
+    for (Thing& thing : things) thing.world_from_shape = glm::translate(glm::dmat4(1), glm::dvec3(place)) * thing.world_from_shape;
     return things;
 }
 
@@ -99,10 +106,12 @@ std::vector<std::uint64_t> answers_of_rays(int count, unsigned seed) {
     std::vector<std::uint64_t> found;
     constexpr int scenes = 2;
     for (int n = 0; n < scenes; ++n) {
-        const auto scene = scene_of(all_sorts(random));
+        // Around the origin, and far out.
+        const glm::vec3 place = n == 0 ? glm::vec3(0) : glm::vec3(3000, -2000, 100);
+        const auto scene = scene_of(all_sorts(random, place));
         for (int k = 0; k < count / scenes; ++k) {
             const glm::vec3 origin(between(random, -40, 40), between(random, -40, 40), between(random, -8, 15));
-            found.push_back(answers(*scene, {origin, random_direction(random), 200}, k % 8 == 0));
+            found.push_back(answers(*scene, {place + origin, random_direction(random), 200}, k % 8 == 0));
         }
         for (int k = 0; k < count / scenes / 10; ++k) {
             // Onto the lattice of the tiles, exactly along an axis or nearly so.
@@ -111,7 +120,7 @@ std::vector<std::uint64_t> answers_of_rays(int count, unsigned seed) {
             direction[axis] = random() % 2u == 0 ? 1.0f : -1.0f;
             if (random() % 2u == 0) direction[(axis + 1) % 3] = 1e-9f;
             origin[axis] = -direction[axis] * 60;
-            found.push_back(answers(*scene, {origin, direction, 8192}, k % 8 == 0));
+            found.push_back(answers(*scene, {place + origin, direction, 8192}, k % 8 == 0));
         }
         if (n > 0) continue;
         std::vector<trace::ColumnHit> column;

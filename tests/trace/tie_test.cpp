@@ -91,6 +91,27 @@ TEST(Ties, FarObjectsDoNotMatter) {
     }
 }
 
+// Copies share a mesh: what is far away and stretched must not change how a hit on the copy at hand is judged.
+TEST(Ties, StretchedCopiesFarAwayDoNotMatter) {
+    std::vector<Thing> things = tied_things();
+    std::mt19937 random(12);
+    std::vector<Ray> rays = many_rays();
+    for (int n = 0; n < 20000; ++n) {
+        // Grazing the squares.
+        const glm::vec3 target(between(random, -19, 19), between(random, -19, 19), -6), from(between(random, -60, 60), between(random, -60, 60), between(random, -5.99f, -5));
+        rays.push_back({from, glm::normalize(target - from), 500});
+    }
+    const std::vector<Answer> before = answers(*scene_of(things), rays);
+    const std::size_t count = things.size();
+    for (std::size_t n = 0; n < count; ++n) {
+        things.push_back(things[n]);
+        things.back().world_from_shape = glm::translate(glm::dmat4(1), glm::dvec3(2500, 100 * static_cast<double>(n), 0)) * glm::scale(glm::dmat4(1), glm::dvec3(1, n % 2 == 0 ? 12 : 1, 0.05));
+    }
+    const auto map = map_of(things);
+    EXPECT_LT(map->meshes.size(), count);
+    EXPECT_TRUE(answers(*scene_of(map), rays) == before);
+}
+
 TEST(Ties, NearObjectsOffTheRaysDoNotMatter) {
     // They change the BVH right where the ties are.
     std::vector<Thing> things = tied_things();
