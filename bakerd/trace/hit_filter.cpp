@@ -27,22 +27,22 @@ EmbreeHit embree_hit(const RTCFilterFunctionNArguments& args, const TriangleSet&
             set.spread};
 }
 
+// In the space in which Embree tested the triangle: that is where it rounded.
+float order_of(const TriangleSet& set, const Intersection& at, const Ray& ray, const glm::mat4x3& world_from_object, const ObjectTriangle& corners) {
+    const bool in_world_space = set.instance != UINT32_MAX;
+    if (!in_world_space) return order_of(at, ray, world_from_object, corners);
+    const Triangle world = transformed(world_from_object, corners);
+    const glm::vec3 a(world.a), b(world.b), c(world.c);
+    return order_of(at, ray, glm::mat4x3(1), {a, b, c});
+}
+
 // Works the intersection out; what is met nowhere lies infinitely far.
 void resolve(Candidate& hit, const Query& query, const Ray& ray) {
     const glm::mat4x3& world_from_object = query.scene.world_from_object(hit.id.instance);
     const ObjectTriangle corners = corners_of(*hit.set, hit.id.triangle);
     hit.at = intersect(ray, world_from_object, corners);
-    hit.least_m = hit.most_m = std::numeric_limits<float>::infinity();
-    if (!hit.at) return;
-    const bool in_world_space = hit.set->instance != UINT32_MAX;
-    if (in_world_space) {
-        const Triangle world = transformed(world_from_object, corners);
-        const glm::vec3 a(world.a), b(world.b), c(world.c);
-        hit.least_m = order_of(*hit.at, ray, glm::mat4x3(1), {a, b, c});
-    } else {
-        hit.least_m = order_of(*hit.at, ray, world_from_object, corners);
-    }
-    hit.most_m = hit.least_m;
+    const float order_m = hit.at ? order_of(*hit.set, *hit.at, ray, world_from_object, corners) : std::numeric_limits<float>::infinity();
+    hit.least_m = hit.most_m = order_m;
 }
 
 bool is_there(const Candidate& hit) { return !hit.set->mixed || trace::is_there(*hit.set->map, *hit.set->primitive, hit.set->triangle_of(hit.id.triangle), hit.at->u, hit.at->v); }

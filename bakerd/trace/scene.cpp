@@ -126,7 +126,7 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
     const TriangleSet& set = *query.best.set;
     const Instance& instance = instances_[id.instance];
     const Intersection at = query.best.at ? *query.best.at : *intersect(ray, instance.world_from_object, corners_of(set, id.triangle));
-    const bool front = meets_front({id, at}, ray);
+    const bool front = meets_front(id.instance, at, ray);
     const double double_area_m2 = glm::length(at.normal), towards = glm::dot(at.normal, glm::dvec3(ray.direction)) < 0 ? 1 : -1;
     Hit hit{static_cast<float>(at.distance_m), id.instance, set.primitive_index, set.triangle_of(id.triangle), at.u, at.v, front,
             glm::vec3(at.normal * (towards / double_area_m2)), static_cast<float>(double_area_m2), &set};
@@ -135,8 +135,8 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
 }
 
 // The front is counter-clockwise in object space.
-bool Scene::meets_front(const Crossing& crossing, const Ray& ray) const {
-    return (glm::dot(crossing.at.normal, glm::dvec3(ray.direction)) < 0) != instances_[crossing.id.instance].mirrored;
+bool Scene::meets_front(std::uint32_t instance, const Intersection& at, const Ray& ray) const {
+    return (glm::dot(at.normal, glm::dvec3(ray.direction)) < 0) != instances_[instance].mirrored;
 }
 
 // Every triangle that the ray meets, once, in the order of their ids.
@@ -222,7 +222,7 @@ void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
         const TriangleSet& set = set_of(crossing.id.instance, crossing.id.set);
         const std::optional<double> z_m = height_at(transformed(instances_[crossing.id.instance].world_from_object, corners_of(set, crossing.id.triangle)), at);
         if (!z_m) continue;
-        const bool two_sided = is_two_sided(*set.material, object.role), front = meets_front(crossing, line);
+        const bool two_sided = is_two_sided(*set.material, object.role), front = meets_front(crossing.id.instance, crossing.at, line);
         hits.push_back({static_cast<float>(*z_m), front || two_sided, !front || two_sided});
     }
     std::stable_sort(hits.begin(), hits.end(), [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });

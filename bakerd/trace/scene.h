@@ -103,7 +103,7 @@ class Scene {
     Scene() = default;
     void add_instance(std::uint32_t object, const MeshBvh& bvh);
     void add_in_world_space(std::uint32_t object, const Region& region, float reach_m);
-    [[nodiscard]] bool meets_front(const Crossing& crossing, const Ray& ray) const;
+    [[nodiscard]] bool meets_front(std::uint32_t instance, const Intersection& at, const Ray& ray) const;
     [[nodiscard]] std::vector<Crossing> all_crossings(const Ray& ray) const;
     [[nodiscard]] const TriangleSet& set_of(std::uint32_t instance, std::uint32_t embree_geometry) const;
 

@@ -144,25 +144,7 @@ std::vector<std::uint64_t> answers_of_rays(int count, unsigned seed) {
 }
 
 // Hills, blocks and trees over some sectors, lamps and a glowing block among them.
-GltfBuilder village() {
-    std::mt19937 random(11);
-    std::uniform_real_distribution<float> place(-30, 90), height(2, 9);
-    GltfBuilder b;
-    const int grass = b.add_material({.colour = {0.2f, 0.4f, 0.1f, 1}}), stone = b.add_material({.colour = {0.5f, 0.45f, 0.4f, 1}}), leaf = b.add_material({.colour = {0.1f, 0.3f, 0.05f, 1}});
-    b.add_node({.mesh = b.add_mesh(ground(120), grass)});
-    const int block = b.add_mesh(box({-2, 0, -2}, {2, 5, 2}), stone), crown = b.add_mesh(box({-1.5f, 2, -1.5f}, {1.5f, 6, 1.5f}), leaf);
-    for (int n = 0; n < 12; ++n) b.add_node({.mesh = block, .translation = glm::dvec3(place(random), -1, -place(random)), .rotation = glm::dvec4(0, 0.28, 0, 0.96)});
-    for (int n = 0; n < 30; ++n) b.add_node({.mesh = crown, .translation = glm::dvec3(place(random), 0, -place(random)), .scale = glm::dvec3(1, height(random) / 6, 1), .role = "vegetation"});
-    // Twice the same block: every hit on it is a tie.
-    for (int n = 0; n < 2; ++n) b.add_node({.mesh = block, .translation = glm::dvec3(32, 0, -32)});
-    const int glow = b.add_material({});
-    b.json["materials"][static_cast<std::size_t>(glow)]["emissiveFactor"] = {1, 0.5, 0.25};
-    b.json["materials"][static_cast<std::size_t>(glow)]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 5000;
-    b.add_node({.mesh = b.add_mesh(box({-1, 2, -1}, {1, 3, 1}), glow), .translation = glm::dvec3(20, 0, -10)});
-    for (int n = 0; n < 6; ++n) b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 400 + 10 * n}}), .translation = glm::dvec3(place(random), 3, -place(random))});
-    b.add_node({.light = b.add_light({{"type", "spot"}, {"intensity", 900}, {"spot", {{"outerConeAngle", 0.7}, {"innerConeAngle", 0.3}}}}), .translation = glm::dvec3(30, 6, -20), .rotation = glm::dvec4(-0.6, 0, 0, 0.8)});
-    return b;
-}
+constexpr Clutter village{.low_m = -30, .high_m = 90, .ground_m = 120, .blocks = 12, .crowns = 30, .lamps = 6};
 
 std::vector<bake::Settings> settings_for(bool small) {
     bake::Settings draft = bake::preset("draft").value(), pc = bake::preset("pc").value();
@@ -212,7 +194,7 @@ int main(int argc, char** argv) {
         return test::write(argv[4], found.data(), found.size() * sizeof(found[0]));
     }
     if (what == "bake" && argc == 3) {
-        const auto world = test::open_world(test::village());
+        const auto world = test::open_world(test::clutter(test::village));
         const std::vector<std::uint8_t> bytes = test::baked_bytes(*world, {{0, 0}, {1, 0}}, true);
         return test::write(argv[2], bytes.data(), bytes.size());
     }
