@@ -5,9 +5,10 @@
 
 The guard of a change that must not change a byte. The commit is built beside the tree, in build/same_as, once; --bin
 is where this tree's bakerd and bake are (build/ci/bin when not said). Bakes the demo's island, and the real maps
-among BAKES that ../shared/data has. Exits with 1 when a file differs or is missing on one side.
+among BAKES that ../shared/data has; what the commit baked is kept for the next run. Exits with 1 when a file differs or is missing on one side.
 """
 import argparse
+import hashlib
 import os
 import subprocess
 import sys
@@ -34,10 +35,9 @@ def build(commit):
     tree = os.path.join(SOURCE_DIR, "build", "same_as", sha)
     if not os.path.isdir(tree):
         subprocess.run(["git", "-C", SOURCE_DIR, "worktree", "add", "--detach", tree, sha], check=True)
-    build_dir = os.path.join(tree, "build", "release")
     subprocess.run(["cmake", "--preset", "release", "-DDRTV_BUILD_TESTS=OFF"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", build_dir, "--target", "bakerd", "bake"], check=True, stdout=subprocess.DEVNULL)
-    return os.path.join(build_dir, "bin")
+    subprocess.run(["cmake", "--build", "--preset", "release", "--target", "bakerd", "bake"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
+    return os.path.join(tree, "build", "release", "bin")
 
 
 def baked(bin_dir, map_path, arguments):
@@ -52,6 +52,21 @@ def baked(bin_dir, map_path, arguments):
         return read_folder(farm.path("sectors"))
     finally:
         farm.close()
+
+
+def baked_once(bin_dir, map_path, arguments):
+    """As `baked`, of programs that do not change: what they baked is kept beside them."""
+    with open(map_path, "rb") as file:
+        key = hashlib.sha256(repr(arguments).encode() + file.read()).hexdigest()
+    kept = os.path.join(os.path.dirname(bin_dir), "same_as_" + key)
+    if not os.path.isdir(kept):
+        with tempfile.TemporaryDirectory(dir=os.path.dirname(bin_dir)) as scratch:
+            for name, content in baked(bin_dir, map_path, arguments).items():
+                with open(os.path.join(scratch, name), "wb") as file:
+                    file.write(content)
+            os.rename(scratch, kept)
+            os.mkdir(scratch)
+    return read_folder(kept)
 
 
 def main():
@@ -71,7 +86,7 @@ def main():
             if not os.path.exists(path):
                 print(f"{name}: skipped, there is no {path}")
                 continue
-            ours, theirs = baked(options.bin, path, arguments), baked(other_bin, path, arguments)
+            ours, theirs = baked(options.bin, path, arguments), baked_once(other_bin, path, arguments)
             names = sorted(ours.keys() | theirs.keys())
             different = [file for file in names if ours.get(file) != theirs.get(file)]
             print(f"{name}: {len(names)} files, {len(different)} differ" + (f": {' '.join(different[:8])}" if different else ""), flush=True)
