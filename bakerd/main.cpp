@@ -4,11 +4,11 @@
 #include "bakerd/service/server.h"
 #include "bakerd/trace/device.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <csignal>
 #include <cstdio>
@@ -39,14 +39,26 @@ int serve(const ServeOptions& options) {
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
 
-    if (const auto device = drtv::trace::Device::open(); !device) return complain(device.error());
-    const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    if (const auto device = drtv::trace::Device::open(); !device)
+        return complain(device.error());
+    const int threads = options.threads > 0
+                            ? options.threads
+                            : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-    auto farm = drtv::farm::Farm::open({options.data, {self, "worker", "--blobs", options.data + "/blobs", "--threads", std::to_string(threads)}, threads, options.cache_bytes});
-    if (!farm) return complain(farm.error().message);
+    auto farm = drtv::farm::Farm::open(
+        {options.data,
+         {self, "worker", "--blobs", options.data + "/blobs", "--threads", std::to_string(threads)},
+         threads,
+         options.cache_bytes});
+    if (!farm)
+        return complain(farm.error().message);
     auto server = drtv::service::Server::start(**farm, options.listen, options.tls);
-    if (!server) return complain(server.error());
-    spdlog::info("bakerd listens on {}, keeps its data in {}, bakes on {} threads", (*server)->address(), options.data, threads);
+    if (!server)
+        return complain(server.error());
+    spdlog::info("bakerd listens on {}, keeps its data in {}, bakes on {} threads",
+                 (*server)->address(),
+                 options.data,
+                 threads);
 
     int signal = 0;
     sigwait(&signals, &signal);
@@ -75,32 +87,55 @@ int main(int argc, char** argv) {
 
     ServeOptions serve_options;
     CLI::App* serve_command = app.add_subcommand("serve", "Serve clients until SIGTERM or ctrl-C");
-    serve_command->add_option("--data", serve_options.data, "Folder for database and blobs; made when missing")->required();
-    serve_command->add_option("--listen", serve_options.listen, "Address and port; anything but loopback should have TLS")->capture_default_str();
-    serve_command->add_option("--executor", serve_options.executor, "Where sectors are baked")->check(CLI::IsMember({"local"}))->capture_default_str();
-    serve_command->add_option("--threads", serve_options.threads, "Threads to bake with; 0: all")->check(CLI::Range(0, 1024))->capture_default_str();
-    serve_command->add_option("--cache-size", serve_options.cache_bytes, "Bytes of results to keep, as 500MB or 20GB; beyond, those used longest ago go")->transform(CLI::AsSizeValue(true))->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 62))->capture_default_str();
+    serve_command
+        ->add_option("--data", serve_options.data, "Folder for database and blobs; made when missing")
+        ->required();
+    serve_command
+        ->add_option(
+            "--listen", serve_options.listen, "Address and port; anything but loopback should have TLS")
+        ->capture_default_str();
+    serve_command->add_option("--executor", serve_options.executor, "Where sectors are baked")
+        ->check(CLI::IsMember({"local"}))
+        ->capture_default_str();
+    serve_command->add_option("--threads", serve_options.threads, "Threads to bake with; 0: all")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    serve_command
+        ->add_option("--cache-size",
+                     serve_options.cache_bytes,
+                     "Bytes of results to keep, as 500MB or 20GB; beyond, those used longest ago go")
+        ->transform(CLI::AsSizeValue(true))
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 62))
+        ->capture_default_str();
     serve_command->add_option("--tls-cert", serve_options.tls.certificate, "Server certificate (PEM)");
     serve_command->add_option("--tls-key", serve_options.tls.key, "Its key (PEM)");
-    serve_command->add_option("--tls-client-ca", serve_options.tls.client_ca, "Authority that signs clients' certificates (PEM)");
+    serve_command->add_option(
+        "--tls-client-ca", serve_options.tls.client_ca, "Authority that signs clients' certificates (PEM)");
     // CLI11 reads configuration for the whole program; the options of `serve` stand under a line `[serve]`.
-    app.set_config("--config", "", "File with options: `name = value` lines below a line `[serve]`")->check(CLI::ExistingFile);
+    app.set_config("--config", "", "File with options: `name = value` lines below a line `[serve]`")
+        ->check(CLI::ExistingFile);
     app.allow_config_extras(CLI::config_extras_mode::error);
     serve_command->configurable()->fallthrough();
 
     drtv::farm::WorkerOptions worker_options;
-    CLI::App* worker_command = app.add_subcommand("worker", "Answer requests on standard input (started by the daemon)");
+    CLI::App* worker_command =
+        app.add_subcommand("worker", "Answer requests on standard input (started by the daemon)");
     worker_command->add_option("--blobs", worker_options.blob_folder, "Folder of the blob store")->required();
-    worker_command->add_option("--threads", worker_options.threads, "Threads to bake with; 0: all")->check(CLI::Range(0, 1024));
+    worker_command->add_option("--threads", worker_options.threads, "Threads to bake with; 0: all")
+        ->check(CLI::Range(0, 1024));
 
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        const std::string what = app.get_subcommands().empty() && !app.remaining().empty() ? fmt::format("there is no command '{}'", app.remaining().front()) : error.what();
+        if (error.get_exit_code() == 0)
+            return app.exit(error);  // --help, --version
+        const std::string what = app.get_subcommands().empty() && !app.remaining().empty()
+                                     ? fmt::format("there is no command '{}'", app.remaining().front())
+                                     : error.what();
         complain(what + "; bakerd --help lists what there is");
         return 2;
     }
-    if (*worker_command) return drtv::farm::run_worker(worker_options);
+    if (*worker_command)
+        return drtv::farm::run_worker(worker_options);
     return serve(serve_options);
 }

@@ -14,18 +14,21 @@ std::string local_time(std::int64_t unix_seconds) {
     const std::time_t time = unix_seconds;
     std::tm parts{};
     char text[32] = "";
-    if (::localtime_r(&time, &parts) != nullptr) std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &parts);
+    if (::localtime_r(&time, &parts) != nullptr)
+        std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &parts);
     return text;
 }
 
 int print(Connection& connection, const grpc::Status& status, const v1::Job& job) {
-    if (!status.ok()) return complain(connection.sentence(status));
+    if (!status.ok())
+        return complain(connection.sentence(status));
     if (connection.options.json) {
         std::puts(json_line(job).c_str());
         return 0;
     }
     std::puts(one_line(job).c_str());
-    if (!job.error().empty()) std::printf("  %s\n", job.error().c_str());
+    if (!job.error().empty())
+        std::printf("  %s\n", job.error().c_str());
     return 0;
 }
 
@@ -36,15 +39,31 @@ int run_list(Connection& connection) {
     for (;;) {
         grpc::ClientContext context;
         v1::ListJobsResponse response;
-        if (const grpc::Status status = connection.jobs->ListJobs(&context, request, &response); !status.ok()) return complain(connection.sentence(status));
-        if (!connection.options.json && request.page_token().empty()) std::printf("%5s  %-9s  %-19s  %13s  %9s  %s\n", "JOB", "STATE", "CREATED", "SECTORS", "PROBES", "PRESET");
+        if (const grpc::Status status = connection.jobs->ListJobs(&context, request, &response); !status.ok())
+            return complain(connection.sentence(status));
+        if (!connection.options.json && request.page_token().empty())
+            std::printf("%5s  %-9s  %-19s  %13s  %9s  %s\n",
+                        "JOB",
+                        "STATE",
+                        "CREATED",
+                        "SECTORS",
+                        "PROBES",
+                        "PRESET");
         for (const v1::Job& job : response.jobs()) {
-            if (connection.options.json) std::puts(json_line(job).c_str());
+            if (connection.options.json)
+                std::puts(json_line(job).c_str());
             else
-                std::printf("%5s  %-9s  %-19s  %6lld/%6lld  %9s  %s\n", job_number(job).c_str(), state_name(job.state()).c_str(), local_time(job.create_time_seconds()).c_str(),
-                            static_cast<long long>(job.sectors_done()), static_cast<long long>(job.sectors_total()), with_thousands(job.probes()).c_str(), job.settings().preset().c_str());
+                std::printf("%5s  %-9s  %-19s  %6lld/%6lld  %9s  %s\n",
+                            job_number(job).c_str(),
+                            state_name(job.state()).c_str(),
+                            local_time(job.create_time_seconds()).c_str(),
+                            static_cast<long long>(job.sectors_done()),
+                            static_cast<long long>(job.sectors_total()),
+                            with_thousands(job.probes()).c_str(),
+                            job.settings().preset().c_str());
         }
-        if (response.next_page_token().empty()) return 0;
+        if (response.next_page_token().empty())
+            return 0;
         request.set_page_token(response.next_page_token());
     }
 }

@@ -30,7 +30,9 @@ int run_list(Connection& connection);
 int run_status(Connection& connection, const std::string& job);
 int run_cancel(Connection& connection, const std::string& job);
 // `progressed` is told of the job now and again.
-int run_watch(Connection& connection, const std::string& job, const std::function<void(const v1::Job&)>& progressed = {});
+int run_watch(Connection& connection,
+              const std::string& job,
+              const std::function<void(const v1::Job&)>& progressed = {});
 int run_pull(Connection& connection, const std::string& job, const std::string& folder);
 
 // The folder and those above it; a sentence when it cannot be had.
@@ -44,7 +46,8 @@ void catch_interrupt();
 [[nodiscard]] bool interrupted();
 
 // Checks the options, uploads the map, and gives the job that they ask for.
-[[nodiscard]] tl::expected<v1::Job, std::string> prepare_job(Connection& connection, const SubmitOptions& options);
+[[nodiscard]] tl::expected<v1::Job, std::string> prepare_job(Connection& connection,
+                                                             const SubmitOptions& options);
 
 // Pulls the finished files of a job into a folder, as often as asked: each file once.
 class FolderPull {

@@ -15,18 +15,23 @@ namespace {
 
 tl::expected<std::string, std::string> read_text(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file) return tl::unexpected(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+    if (!file)
+        return tl::unexpected(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
     return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-tl::expected<std::shared_ptr<grpc::ChannelCredentials>, std::string> credentials(const ConnectionOptions& options) {
+tl::expected<std::shared_ptr<grpc::ChannelCredentials>, std::string> credentials(
+    const ConnectionOptions& options) {
     const std::array<std::string, 3> paths = {options.tls_ca, options.tls_key, options.tls_certificate};
-    if (paths[0].empty() && paths[1].empty() && paths[2].empty()) return grpc::InsecureChannelCredentials();
+    if (paths[0].empty() && paths[1].empty() && paths[2].empty())
+        return grpc::InsecureChannelCredentials();
     std::array<std::string, 3> texts;
     for (std::size_t n = 0; n < paths.size(); ++n) {
-        if (paths[n].empty()) return tl::unexpected(std::string("TLS needs all three of --tls-ca, --tls-cert and --tls-key"));
+        if (paths[n].empty())
+            return tl::unexpected(std::string("TLS needs all three of --tls-ca, --tls-cert and --tls-key"));
         auto text = read_text(paths[n]);
-        if (!text) return tl::unexpected(text.error());
+        if (!text)
+            return tl::unexpected(text.error());
         texts[n] = std::move(*text);
     }
     return grpc::SslCredentials({texts[0], texts[1], texts[2]});
@@ -35,14 +40,19 @@ tl::expected<std::shared_ptr<grpc::ChannelCredentials>, std::string> credentials
 }  // namespace
 
 std::string Connection::sentence(const grpc::Status& status) const {
-    const bool unreached = status.error_code() == grpc::StatusCode::UNAVAILABLE && status.error_message().find("stopping") == std::string::npos;
-    if (unreached) return fmt::format("cannot reach bakerd at {}: is it running?", options.server);
-    return status.error_message().empty() ? fmt::format("bakerd answered with status {}", static_cast<int>(status.error_code())) : status.error_message();
+    const bool unreached = status.error_code() == grpc::StatusCode::UNAVAILABLE &&
+                           status.error_message().find("stopping") == std::string::npos;
+    if (unreached)
+        return fmt::format("cannot reach bakerd at {}: is it running?", options.server);
+    return status.error_message().empty()
+               ? fmt::format("bakerd answered with status {}", static_cast<int>(status.error_code()))
+               : status.error_message();
 }
 
 tl::expected<Connection, std::string> connect(const ConnectionOptions& options) {
     const auto secured = credentials(options);
-    if (!secured) return tl::unexpected(secured.error());
+    if (!secured)
+        return tl::unexpected(secured.error());
     grpc::ChannelArguments arguments;
     // A restarted daemon is found again within a second.
     arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
@@ -63,6 +73,8 @@ int complain(const std::string& sentence) {
     return 1;
 }
 
-std::string job_resource(const std::string& argument) { return argument.starts_with("jobs/") ? argument : "jobs/" + argument; }
+std::string job_resource(const std::string& argument) {
+    return argument.starts_with("jobs/") ? argument : "jobs/" + argument;
+}
 
 }  // namespace drtv::client

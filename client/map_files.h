@@ -21,8 +21,8 @@ struct LocalMap {
     std::vector<std::string> roots;  // map paths
 };
 
-// `arguments` are .gltf or .glb files, or folders of them. A file that a glTF names but that is not there is left
-// out: the server's importer knows whether it matters, and says so.
+// `arguments` are .gltf or .glb files, or folders of them. A file that a glTF names but that is not there is
+// left out: the server's importer knows whether it matters, and says so.
 [[nodiscard]] tl::expected<LocalMap, std::string> collect_map(const std::vector<std::string>& arguments);
 
 // SHA-256 of a file that may be written to again: the digest is of what was read.

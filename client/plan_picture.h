@@ -9,7 +9,9 @@
 
 namespace drtv::client {
 
-// Sectors that hit are green, near hits yellow, those to be baked red; what changed is framed in blue. Writes a PNG whole or not at all.
-[[nodiscard]] tl::expected<void, std::string> write_plan_picture(const v1::Plan& plan, const std::string& path);
+// Sectors that hit are green, near hits yellow, those to be baked red; what changed is framed in blue. Writes
+// a PNG whole or not at all.
+[[nodiscard]] tl::expected<void, std::string> write_plan_picture(const v1::Plan& plan,
+                                                                 const std::string& path);
 
 }  // namespace drtv::client

@@ -24,12 +24,22 @@ struct Transfer {
     std::int64_t sent = 0, total = 0;
     Progress progress;
 
-    void show() { progress.show(total == 0 ? 1 : static_cast<double>(sent) / static_cast<double>(total), fmt::format("uploading {:.1f} of {:.1f} MB", static_cast<double>(sent) * 1e-6, static_cast<double>(total) * 1e-6)); }
+    void show() {
+        progress.show(total == 0 ? 1 : static_cast<double>(sent) / static_cast<double>(total),
+                      fmt::format("uploading {:.1f} of {:.1f} MB",
+                                  static_cast<double>(sent) * 1e-6,
+                                  static_cast<double>(total) * 1e-6));
+    }
 };
 
-bool passing(const grpc::Status& status) { return status.error_code() == grpc::StatusCode::ABORTED || status.error_code() == grpc::StatusCode::UNAVAILABLE; }
+bool passing(const grpc::Status& status) {
+    return status.error_code() == grpc::StatusCode::ABORTED ||
+           status.error_code() == grpc::StatusCode::UNAVAILABLE;
+}
 
-grpc::Status find_missing(Connection& connection, const std::vector<const LocalFile*>& files, v1::FindMissingBlobsResponse& response) {
+grpc::Status find_missing(Connection& connection,
+                          const std::vector<const LocalFile*>& files,
+                          v1::FindMissingBlobsResponse& response) {
     v1::FindMissingBlobsRequest request;
     for (const LocalFile* file : files) {
         v1::Blob* blob = request.add_blobs();
@@ -40,10 +50,15 @@ grpc::Status find_missing(Connection& connection, const std::vector<const LocalF
     return connection.blobs->FindMissingBlobs(&context, request, &response);
 }
 
-grpc::Status send_blob(Connection& connection, const LocalFile& file, std::int64_t offset, Transfer& transfer) {
+grpc::Status send_blob(Connection& connection,
+                       const LocalFile& file,
+                       std::int64_t offset,
+                       Transfer& transfer) {
     std::ifstream input(file.disk_path, std::ios::binary);
     input.seekg(offset);
-    if (!input) return {grpc::StatusCode::NOT_FOUND, fmt::format("cannot read {}: {}", file.disk_path, std::strerror(errno))};
+    if (!input)
+        return {grpc::StatusCode::NOT_FOUND,
+                fmt::format("cannot read {}: {}", file.disk_path, std::strerror(errno))};
     grpc::ClientContext context;
     v1::UploadBlobResponse response;
     const auto writer = connection.blobs->UploadBlob(&context, &response);
@@ -53,9 +68,11 @@ grpc::Status send_blob(Connection& connection, const LocalFile& file, std::int64
     request.set_offset(offset);
     std::string buffer(chunk_bytes, '\0');
     bool first = true;
-    while (input.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || input.gcount() > 0 || first) {
+    while (input.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || input.gcount() > 0 ||
+           first) {
         request.set_data(buffer.data(), static_cast<std::size_t>(input.gcount()));
-        if (!writer->Write(request)) break;  // Finish says why
+        if (!writer->Write(request))
+            break;  // Finish says why
         transfer.sent += input.gcount();
         transfer.show();
         request.clear_blob();
@@ -66,27 +83,36 @@ grpc::Status send_blob(Connection& connection, const LocalFile& file, std::int64
     return writer->Finish();
 }
 
-tl::expected<void, std::string> upload_file(Connection& connection, const LocalFile& file, Transfer& transfer) {
+tl::expected<void, std::string> upload_file(Connection& connection,
+                                            const LocalFile& file,
+                                            Transfer& transfer) {
     const std::int64_t sent_before = transfer.sent;
     grpc::Status status;
     for (int attempt = 0; attempt < upload_attempts && !interrupted(); ++attempt) {
-        if (attempt > 0) std::this_thread::sleep_for(upload_pause);
+        if (attempt > 0)
+            std::this_thread::sleep_for(upload_pause);
         v1::FindMissingBlobsResponse missing;
         status = find_missing(connection, {&file}, missing);
         // A daemon that restarts is away for a moment.
-        if (passing(status)) continue;
-        if (!status.ok()) break;
+        if (passing(status))
+            continue;
+        if (!status.ok())
+            break;
         if (missing.missing_size() == 0) {
             transfer.sent = sent_before + file.size_bytes;
             return {};
         }
-        const std::int64_t offset = missing.missing(0).received_bytes() <= file.size_bytes ? missing.missing(0).received_bytes() : 0;
+        const std::int64_t offset =
+            missing.missing(0).received_bytes() <= file.size_bytes ? missing.missing(0).received_bytes() : 0;
         transfer.sent = sent_before + offset;
         status = send_blob(connection, file, offset, transfer);
-        if (status.ok()) return {};
-        if (!passing(status)) break;
+        if (status.ok())
+            return {};
+        if (!passing(status))
+            break;
     }
-    if (interrupted()) return tl::unexpected(std::string("interrupted; what was uploaded stays with the server"));
+    if (interrupted())
+        return tl::unexpected(std::string("interrupted; what was uploaded stays with the server"));
     return tl::unexpected(fmt::format("cannot upload {}: {}", file.disk_path, connection.sentence(status)));
 }
 
@@ -94,15 +120,21 @@ tl::expected<void, std::string> upload_file(Connection& connection, const LocalF
 
 tl::expected<v1::Map, std::string> upload_map(Connection& connection, const LocalMap& map) {
     std::vector<const LocalFile*> all;
-    for (const LocalFile& file : map.files) all.push_back(&file);
+    for (const LocalFile& file : map.files)
+        all.push_back(&file);
     v1::FindMissingBlobsResponse missing;
-    if (const grpc::Status status = find_missing(connection, all, missing); !status.ok()) return tl::unexpected(connection.sentence(status));
+    if (const grpc::Status status = find_missing(connection, all, missing); !status.ok())
+        return tl::unexpected(connection.sentence(status));
     {
         Transfer transfer;
-        for (const auto& m : missing.missing()) transfer.total += m.blob().size_bytes();
+        for (const auto& m : missing.missing())
+            transfer.total += m.blob().size_bytes();
         for (const auto& m : missing.missing()) {
-            const auto file = std::find_if(map.files.begin(), map.files.end(), [&](const LocalFile& f) { return f.sha256 == m.blob().sha256(); });
-            if (auto uploaded = upload_file(connection, *file, transfer); !uploaded) return tl::unexpected(uploaded.error());
+            const auto file = std::find_if(map.files.begin(), map.files.end(), [&](const LocalFile& f) {
+                return f.sha256 == m.blob().sha256();
+            });
+            if (auto uploaded = upload_file(connection, *file, transfer); !uploaded)
+                return tl::unexpected(uploaded.error());
         }
     }
     v1::CreateMapRequest request;
@@ -112,11 +144,13 @@ tl::expected<v1::Map, std::string> upload_map(Connection& connection, const Loca
         f->set_sha256(file.sha256);
         f->set_size_bytes(file.size_bytes);
     }
-    for (const std::string& root : map.roots) request.mutable_map()->add_roots(root);
+    for (const std::string& root : map.roots)
+        request.mutable_map()->add_roots(root);
     grpc::ClientContext context;
     v1::Map created;
     const grpc::Status status = connection.maps->CreateMap(&context, request, &created);
-    if (!status.ok()) return tl::unexpected(connection.sentence(status));
+    if (!status.ok())
+        return tl::unexpected(connection.sentence(status));
     return created;
 }
 

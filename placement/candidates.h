@@ -7,7 +7,7 @@
 
 namespace drtv::placement {
 
-inline constexpr float probe_height_m = 1;               // above the surface or the box
+inline constexpr float probe_height_m = 1;  // above the surface or the box
 inline constexpr float least_free_height_m = 1.5f;
 
 // A proposal with its place in the order of priority.
@@ -18,17 +18,23 @@ struct Candidate {
     std::uint32_t level = 0;          // of several in one column, counted from the bottom
     std::uint64_t hash = 0;           // of the column; decides what the rest leaves open
 
-    [[nodiscard]] auto priority() const { return std::tie(kind, lattice_class, level, hash, position.x, position.y, position.z); }
+    [[nodiscard]] auto priority() const {
+        return std::tie(kind, lattice_class, level, hash, position.x, position.y, position.z);
+    }
 };
 
-// Columns of one class lie at least `min_distance_m` apart, so that they never compete with each other; classes
-// are numbered so that each fills the widest gaps the earlier ones leave (Bayer 1973).
+// Columns of one class lie at least `min_distance_m` apart, so that they never compete with each other;
+// classes are numbered so that each fills the widest gaps the earlier ones leave (Bayer 1973).
 [[nodiscard]] std::uint32_t lattice_class_of(std::int32_t a, std::int32_t b, std::uint32_t stride);
 
 // Smallest power of two s for which s lattice steps are at least the distance.
 [[nodiscard]] std::uint32_t lattice_stride(std::int32_t lattice_m, float min_distance_m);
 
 // All proposals in the square [low, high) of world metres, by priority.
-[[nodiscard]] std::vector<Candidate> propose(glm::dvec2 low, glm::dvec2 high, std::span<const Box> vegetation, const Surroundings& surroundings, const Settings& settings);
+[[nodiscard]] std::vector<Candidate> propose(glm::dvec2 low,
+                                             glm::dvec2 high,
+                                             std::span<const Box> vegetation,
+                                             const Surroundings& surroundings,
+                                             const Settings& settings);
 
 }  // namespace drtv::placement

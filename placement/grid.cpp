@@ -18,18 +18,23 @@ namespace {
 // distances exactly.
 using Kernel = CGAL::Simple_cartesian<double>;
 using IndexedPoint = std::pair<Kernel::Point_3, std::size_t>;
-using Traits = CGAL::Search_traits_adapter<IndexedPoint, CGAL::First_of_pair_property_map<IndexedPoint>, CGAL::Search_traits_3<Kernel>>;
+using Traits = CGAL::Search_traits_adapter<IndexedPoint,
+                                           CGAL::First_of_pair_property_map<IndexedPoint>,
+                                           CGAL::Search_traits_3<Kernel>>;
 using Search = CGAL::Orthogonal_incremental_neighbor_search<Traits>;
 
 constexpr std::int32_t margin_units = 2 * units_per_m;  // below the lowest and above the highest probe
 
 // The `considered_probes` nearest by (distance, index).
-void nearest_probes(const Search::Tree& tree, const Position& centre, std::vector<std::pair<double, std::size_t>>& nearest) {
+void nearest_probes(const Search::Tree& tree,
+                    const Position& centre,
+                    std::vector<std::pair<double, std::size_t>>& nearest) {
     nearest.clear();
     const Search search(tree, Kernel::Point_3(centre.x, centre.y, centre.z));
     for (const auto& [point, squared] : search) {
         // The search leaves the order of equal distances open: take all of them before sorting.
-        if (nearest.size() >= considered_probes && squared > nearest.back().first) break;
+        if (nearest.size() >= considered_probes && squared > nearest.back().first)
+            break;
         nearest.emplace_back(squared, point.second);
     }
     std::sort(nearest.begin(), nearest.end());
@@ -38,11 +43,15 @@ void nearest_probes(const Search::Tree& tree, const Position& centre, std::vecto
 
 }  // namespace
 
-ProbeGrid build_grid(std::int32_t i, std::int32_t j, std::span<const Position> probes, const Surroundings& surroundings) {
+ProbeGrid build_grid(std::int32_t i,
+                     std::int32_t j,
+                     std::span<const Position> probes,
+                     const Surroundings& surroundings) {
     assert(probes.size() <= max_probes);
     ProbeGrid grid;
     grid.cells.fill(no_probe);
-    if (probes.empty()) return grid;
+    if (probes.empty())
+        return grid;
 
     const auto by_height = [](const Position& a, const Position& b) { return a.z < b.z; };
     const std::int32_t bottom = std::min_element(probes.begin(), probes.end(), by_height)->z - margin_units;
@@ -71,7 +80,8 @@ ProbeGrid build_grid(std::int32_t i, std::int32_t j, std::span<const Position> p
                 nearest_probes(tree, centre, nearest);
                 std::size_t chosen = nearest.front().second;
                 for (const auto& [distance, probe] : nearest) {
-                    if (!surroundings.sees(metres(corner + centre), metres(probes[probe]))) continue;
+                    if (!surroundings.sees(metres(corner + centre), metres(probes[probe])))
+                        continue;
                     chosen = probe;
                     break;
                 }

@@ -1,9 +1,9 @@
 // Automatic placement of probes in one sector (s14-s17).
 //
 // Columns on the global 4 m lattice propose a probe above every up-facing surface; columns on the 8 m lattice
-// propose one on top of the vegetation's combined bounding boxes. Proposals closer than the minimal distance are
-// decided by a rule that needs no order of work: two sectors decide alike about their common border, each by
-// itself, because a decision depends only on proposals within `decision_margin_m`.
+// propose one on top of the vegetation's combined bounding boxes. Proposals closer than the minimal distance
+// are decided by a rule that needs no order of work: two sectors decide alike about their common border, each
+// by itself, because a decision depends only on proposals within `decision_margin_m`.
 #pragma once
 
 #include "placement/closed_volume.h"
@@ -50,7 +50,8 @@ struct Box {
 
 // The scene, as functions. Each must be a pure function of its arguments; they are called from one thread.
 struct Surroundings {
-    // All crossings of the vertical line at (x, y) with static objects, from the top down; replaces the vector.
+    // All crossings of the vertical line at (x, y) with static objects, from the top down; replaces the
+    // vector.
     std::function<void(glm::vec2, std::vector<ColumnHit>&)> column;
     // Of rays from a point, how many meet the back of a one-sided surface first.
     std::function<std::size_t(const glm::vec3& origin, std::span<const glm::vec3> directions)> backs_met;
@@ -80,10 +81,10 @@ struct Placement {
 };
 
 struct Input {
-    std::int32_t i = 0, j = 0;               // the sector
-    std::span<const Box> vegetation;         // all that overlap the sector grown by decision_margin_m
-    std::span<const glm::dvec3> manual;      // all manual probes of the map
-    std::span<const ClosedVolume> no_probes; // all such volumes of the map
+    std::int32_t i = 0, j = 0;                // the sector
+    std::span<const Box> vegetation;          // all that overlap the sector grown by decision_margin_m
+    std::span<const glm::dvec3> manual;       // all manual probes of the map
+    std::span<const ClosedVolume> no_probes;  // all such volumes of the map
 };
 
 // A point stands in a solid when more than a quarter of these rays meet a back.
@@ -96,6 +97,8 @@ struct Input {
 [[nodiscard]] float decision_margin_m(const Settings& settings);
 
 // Fails with a sentence when the sector holds more than 255 manual probes.
-[[nodiscard]] tl::expected<Placement, std::string> place_probes(const Input& input, const Surroundings& surroundings, const Settings& settings);
+[[nodiscard]] tl::expected<Placement, std::string> place_probes(const Input& input,
+                                                                const Surroundings& surroundings,
+                                                                const Settings& settings);
 
 }  // namespace drtv::placement

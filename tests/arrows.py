@@ -41,8 +41,25 @@ FOREIGN = {
     r"openssl/": {"bakerd/map", "client"},
     r"CLI/": {"bakerd", "client"},
     r"spdlog/": {"bakerd", "bakerd/farm", "bakerd/service"},
-    r"fmt/": {"bakerd", "placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/farm", "bakerd/service", "client"},
-    r"tl/expected": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/farm", "bakerd/service", "client"},
+    r"fmt/": {
+        "bakerd",
+        "placement",
+        "bakerd/map",
+        "bakerd/trace",
+        "bakerd/bake",
+        "bakerd/farm",
+        "bakerd/service",
+        "client",
+    },
+    r"tl/expected": {
+        "placement",
+        "bakerd/map",
+        "bakerd/trace",
+        "bakerd/bake",
+        "bakerd/farm",
+        "bakerd/service",
+        "client",
+    },
 }
 
 FORBIDDEN_NAMES = {"util", "utils", "common", "core", "helper", "helpers", "manager"}
@@ -100,7 +117,9 @@ def check(root):
                 continue
             for pattern, rooms in FOREIGN.items():
                 if re.match(pattern, header) and room not in rooms:
-                    errors.append(f"{path}: includes {header}, which only {', '.join(sorted(rooms)) or 'nobody'} may")
+                    errors.append(
+                        f"{path}: includes {header}, which only {', '.join(sorted(rooms)) or 'nobody'} may"
+                    )
     return errors
 
 
@@ -108,7 +127,11 @@ PLANTED = [
     ("format/src/planted.cpp", '#include "bakerd/map/map.h"\n', "no arrow from format to bakerd/map"),
     ("format/src/planted.cpp", "#include <glm/vec3.hpp>\n", "glm/vec3.hpp, which only"),
     ("placement/planted.cpp", "#include <embree3/rtcore.h>\n", "embree3/rtcore.h, which only bakerd/trace"),
-    ("bakerd/trace/planted.cpp", "#  include <CGAL/Surface_mesh.h>\n", "CGAL/Surface_mesh.h, which only placement"),
+    (
+        "bakerd/trace/planted.cpp",
+        "#  include <CGAL/Surface_mesh.h>\n",
+        "CGAL/Surface_mesh.h, which only placement",
+    ),
     ("bakerd/map/planted.h", '#include "bakerd/trace/scene.h"\n', "no arrow from bakerd/map to bakerd/trace"),
     ("bakerd/farm/planted.cpp", "#include <grpcpp/grpcpp.h>\n", "grpcpp/grpcpp.h, which only"),
     ("bakerd/farm/planted.cpp", '#include "drtv/v1/job.pb.h"\n', "no arrow from bakerd/farm to proto"),
@@ -127,7 +150,9 @@ def self_test():
                 file.write(text)
             found = check(root)
             if len(found) != 1 or expected not in found[0]:
-                print(f"planted {text.strip() or path} in {path}: found {found}, expected one with '{expected}'")
+                print(
+                    f"planted {text.strip() or path} in {path}: found {found}, expected one with '{expected}'"
+                )
                 failures += 1
     print(f"{len(PLANTED) - failures} passed, {failures} failed")
     return failures == 0

@@ -1,4 +1,5 @@
-// Whether a result that was baked of one map still holds for another: its footprint against what changed between the two.
+// Whether a result that was baked of one map still holds for another: its footprint against what changed
+// between the two.
 #pragma once
 
 #include "bakerd/bake/footprint.h"
@@ -31,9 +32,11 @@ enum class Cause : std::uint8_t {
 
 struct Assessment {
     Verdict verdict = Verdict::hit;
-    float bound = 0;  // on the change of any coefficient, as a share of its range; of a hit 0, and 1 and more means that no bound is known
-    // What a bake can take over (sector_bake.h): whether probes stand where they stood, with how many rays of each solid test may end otherwise; and how much
-    // of each probe may differ. No bounds where only the whole can be baked again.
+    float bound = 0;  // on the change of any coefficient, as a share of its range; of a hit 0, and 1 and more
+                      // means that no bound is known
+    // What a bake can take over (sector_bake.h): whether probes stand where they stood, with how many rays of
+    // each solid test may end otherwise; and how much of each probe may differ. No bounds where only the
+    // whole can be baked again.
     bool placement_holds = true;
     std::vector<std::uint8_t> flips;
     std::vector<float> probe_bounds;
@@ -45,11 +48,18 @@ struct Assessment {
     float weight = 0;  // of that change alone
 };
 
-// Whether the result of a bake with `settings` holds for the map of `world`; `changes` are those from the baked map to it. `tolerance` is the largest bound of
-// a near hit; 0 asks for the same bytes. The bound covers all changes together, and edits in between are none of its concern: one that is undone counts nothing.
+// Whether the result of a bake with `settings` holds for the map of `world`; `changes` are those from the
+// baked map to it. `tolerance` is the largest bound of a near hit; 0 asks for the same bytes. The bound
+// covers all changes together, and edits in between are none of its concern: one that is undone counts
+// nothing.
 //
-// Ranges of coefficients: sky visibility 1, radiance transfer 0.2821 (i = 0) and 0.9772 (i > 0), static irradiance static_irradiance_range. REQUIRES: a FloatMode on this thread.
-[[nodiscard]] Assessment assess(const Footprint& footprint, const Settings& settings, std::span<const Change> changes, float tolerance, World& world);
+// Ranges of coefficients: sky visibility 1, radiance transfer 0.2821 (i = 0) and 0.9772 (i > 0), static
+// irradiance static_irradiance_range. REQUIRES: a FloatMode on this thread.
+[[nodiscard]] Assessment assess(const Footprint& footprint,
+                                const Settings& settings,
+                                std::span<const Change> changes,
+                                float tolerance,
+                                World& world);
 
 // Of the sector's probes those that a bake cannot take over. REQUIRES: the verdict is rebake.
 [[nodiscard]] float share_to_bake(const Assessment& assessment, float tolerance);

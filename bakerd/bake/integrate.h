@@ -27,18 +27,21 @@ struct ProbeLight {
     std::uint64_t rays = 0;                           // of the paths
     std::uint64_t shadow_rays = 0;                    // to static lights
     std::uint64_t back_hits = 0;                      // rays absorbed by the back of a one-sided surface
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> back_hit_objects;  // of the map, with their share of back_hits; by object
+    std::vector<std::pair<std::uint32_t, std::uint32_t>>
+        back_hit_objects;  // of the map, with their share of back_hits; by object
 };
 
 struct IntegrationSettings {
     std::uint32_t bounces = 3;
     float reach_m = 512;
-    // Standard error to stop at, of E/pi relit by a sky of radiance 1 and of static irradiance, over their mean
-    // (convergence.h). Paths are doubled from 1,024 as long as it is not reached and the samples have as many. 0: all samples.
+    // Standard error to stop at, of E/pi relit by a sky of radiance 1 and of static irradiance, over their
+    // mean (convergence.h). Paths are doubled from 1,024 as long as it is not reached and the samples have as
+    // many. 0: all samples.
     float error = 0;
 };
 
-// Rays in the order in which they were shot (but for the few that are looked at twice), so that others can be measured on them.
+// Rays in the order in which they were shot (but for the few that are looked at twice), so that others can be
+// measured on them.
 struct RayLog {
     std::vector<trace::Ray> paths, shadows;
 };
@@ -53,8 +56,13 @@ struct RayWatch {
 [[nodiscard]] std::uint32_t sample_dimensions(std::uint32_t bounces, bool with_lights);
 
 // A pure function of the triangles and lights within reach and the arguments. `samples` has at least
-// sample_dimensions(bounces, false) dimensions. REQUIRES: a FloatMode on this thread; the recorder has begun with this probe.
-[[nodiscard]] ProbeLight integrate_probe(const trace::Scene& scene, const StaticLights& lights, const glm::ivec3& position_units, const SampleTable& samples,
-                                         const IntegrationSettings& settings, const RayWatch& watch = {});
+// sample_dimensions(bounces, false) dimensions. REQUIRES: a FloatMode on this thread; the recorder has begun
+// with this probe.
+[[nodiscard]] ProbeLight integrate_probe(const trace::Scene& scene,
+                                         const StaticLights& lights,
+                                         const glm::ivec3& position_units,
+                                         const SampleTable& samples,
+                                         const IntegrationSettings& settings,
+                                         const RayWatch& watch = {});
 
 }  // namespace drtv::bake

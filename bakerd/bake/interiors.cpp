@@ -18,9 +18,15 @@ using placement::Position;
 
 constexpr std::int64_t most_steps = UINT16_MAX;
 
-std::int64_t units(double metres) { return std::llround(metres * position_units_per_m); }
+std::int64_t units(double metres) {
+    return std::llround(metres * position_units_per_m);
+}
 
-Position position_of(const glm::dvec3& point) { return {static_cast<std::int32_t>(units(point.x)), static_cast<std::int32_t>(units(point.y)), static_cast<std::int32_t>(units(point.z))}; }
+Position position_of(const glm::dvec3& point) {
+    return {static_cast<std::int32_t>(units(point.x)),
+            static_cast<std::int32_t>(units(point.y)),
+            static_cast<std::int32_t>(units(point.z))};
+}
 
 map::SectorCoordinate sector_of(const Position& position) {
     constexpr std::int32_t side = sector_size_m * position_units_per_m;
@@ -28,60 +34,85 @@ map::SectorCoordinate sector_of(const Position& position) {
     return {floor_divide(position.x), floor_divide(position.y)};
 }
 
-const map::ManualProbe* probe_of(const map::Map& map, const map::Volume& volume, const placement::ClosedVolume& closed, const glm::dvec3& middle) {
-    if (!volume.probe_name.empty()) return &*std::ranges::find(map.probes, volume.probe_name, &map::ManualProbe::name);
+const map::ManualProbe* probe_of(const map::Map& map,
+                                 const map::Volume& volume,
+                                 const placement::ClosedVolume& closed,
+                                 const glm::dvec3& middle) {
+    if (!volume.probe_name.empty())
+        return &*std::ranges::find(map.probes, volume.probe_name, &map::ManualProbe::name);
     const map::ManualProbe* nearest = nullptr;
     for (const map::ManualProbe& probe : map.probes) {
-        if (nearest != nullptr && glm::distance(probe.position, middle) >= glm::distance(nearest->position, middle)) continue;
-        if (closed.contains(probe.position)) nearest = &probe;
+        if (nearest != nullptr &&
+            glm::distance(probe.position, middle) >= glm::distance(nearest->position, middle))
+            continue;
+        if (closed.contains(probe.position))
+            nearest = &probe;
     }
     return nearest;
 }
 
-// Vertices that round to one place become one; it keeps every edge's triangles on both sides, so that the mesh stays closed.
-tl::expected<Interior, std::string> store_mesh(const std::string& name, const placement::ClosedVolume& closed) {
+// Vertices that round to one place become one; it keeps every edge's triangles on both sides, so that the
+// mesh stays closed.
+tl::expected<Interior, std::string> store_mesh(const std::string& name,
+                                               const placement::ClosedVolume& closed) {
     const std::vector<glm::dvec3> vertices = closed.vertices();
     std::array<std::int64_t, 3> low{}, high{};
     for (glm::length_t axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<std::size_t>(axis);
-        const auto [least, most] = std::ranges::minmax_element(vertices, {}, [&](const glm::dvec3& v) { return v[axis]; });
+        const auto [least, most] =
+            std::ranges::minmax_element(vertices, {}, [&](const glm::dvec3& v) { return v[axis]; });
         low[k] = units((*least)[axis]);
         high[k] = units((*most)[axis]);
     }
     Interior interior;
     const auto length = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-    while (interior.shift < max_interior_shift && (length >> interior.shift) >= most_steps) ++interior.shift;
+    while (interior.shift < max_interior_shift && (length >> interior.shift) >= most_steps)
+        ++interior.shift;
     const auto too_far = [](std::int64_t u) { return std::abs(u) > max_interior_origin_units; };
     if ((length >> interior.shift) >= most_steps || std::ranges::any_of(low, too_far)) {
-        return tl::unexpected(fmt::format("the interior '{}' is {} m long or lies too far from the origin: the limit is 65 km", name, length / position_units_per_m));
+        return tl::unexpected(
+            fmt::format("the interior '{}' is {} m long or lies too far from the origin: the limit is 65 km",
+                        name,
+                        length / position_units_per_m));
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) interior.origin_units[axis] = static_cast<std::int32_t>(low[axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        interior.origin_units[axis] = static_cast<std::int32_t>(low[axis]);
 
     std::map<std::array<std::uint16_t, 3>, std::size_t> index_of;
     const auto index = [&](std::uint32_t vertex) {
         std::array<std::uint16_t, 3> steps{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::int64_t offset = units(vertices[vertex][static_cast<glm::length_t>(axis)]) - low[axis], half = interior.shift == 0 ? 0 : std::int64_t{1} << (interior.shift - 1);
+            const std::int64_t offset = units(vertices[vertex][static_cast<glm::length_t>(axis)]) - low[axis],
+                               half = interior.shift == 0 ? 0 : std::int64_t{1} << (interior.shift - 1);
             steps[axis] = static_cast<std::uint16_t>((offset + half) >> interior.shift);
         }
         const auto [entry, added] = index_of.try_emplace(steps, interior.vertices.size());
-        if (added) interior.vertices.push_back(steps);
+        if (added)
+            interior.vertices.push_back(steps);
         return entry->second;
     };
     for (const glm::uvec3& triangle : closed.triangles()) {
         const std::array<std::size_t, 3> corners = {index(triangle.x), index(triangle.y), index(triangle.z)};
-        if (interior.vertices.size() > max_interior_vertices) return tl::unexpected(fmt::format("the interior '{}' has over {} vertices, the limit", name, max_interior_vertices));
-        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
-        interior.triangles.push_back({static_cast<std::uint16_t>(corners[0]), static_cast<std::uint16_t>(corners[1]), static_cast<std::uint16_t>(corners[2])});
+        if (interior.vertices.size() > max_interior_vertices)
+            return tl::unexpected(fmt::format(
+                "the interior '{}' has over {} vertices, the limit", name, max_interior_vertices));
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+            continue;
+        interior.triangles.push_back({static_cast<std::uint16_t>(corners[0]),
+                                      static_cast<std::uint16_t>(corners[1]),
+                                      static_cast<std::uint16_t>(corners[2])});
     }
     return interior;
 }
 
 }  // namespace
 
-tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map, const map::Volume& volume, const placement::ClosedVolume& closed) {
+tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
+                                                        const map::Volume& volume,
+                                                        const placement::ClosedVolume& closed) {
     auto stored = store_mesh(volume.name, closed);
-    if (!stored) return tl::unexpected(stored.error());
+    if (!stored)
+        return tl::unexpected(stored.error());
     glm::dvec3 low = volume.positions.front(), high = low;
     for (const glm::dvec3& position : volume.positions) {
         low = glm::min(low, position);

@@ -1,5 +1,5 @@
-// Interior volumes (s56): closed meshes whose inside uses one probe. An interior stands in the file of the sector that holds its probe,
-// whole, wherever the mesh reaches.
+// Interior volumes (s56): closed meshes whose inside uses one probe. An interior stands in the file of the
+// sector that holds its probe, whole, wherever the mesh reaches.
 #pragma once
 
 #include "bakerd/map/ground.h"
@@ -18,14 +18,18 @@ namespace drtv::bake {
 
 struct InteriorVolume {
     std::string name;
-    std::optional<placement::Position> probe;  // where it stands; nothing where the volume names none and none is inside
-    map::SectorCoordinate sector;              // of its probe
-    Interior stored;                           // all but the probe's index
+    std::optional<placement::Position>
+        probe;                     // where it stands; nothing where the volume names none and none is inside
+    map::SectorCoordinate sector;  // of its probe
+    Interior stored;               // all but the probe's index
 };
 
-// The probe is the one that the volume names, else of those inside the one nearest to the middle of its bounds. Vertices are rounded to the finest
-// steps of a power of two that span the mesh in 16 bits; triangles that become lines are left out. Fails with a sentence
-// when it has over 65536 vertices or is over 65 km long. REQUIRES: `closed` was made of `volume`, which the map holds.
-[[nodiscard]] tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map, const map::Volume& volume, const placement::ClosedVolume& closed);
+// The probe is the one that the volume names, else of those inside the one nearest to the middle of its
+// bounds. Vertices are rounded to the finest steps of a power of two that span the mesh in 16 bits; triangles
+// that become lines are left out. Fails with a sentence when it has over 65536 vertices or is over 65 km
+// long. REQUIRES: `closed` was made of `volume`, which the map holds.
+[[nodiscard]] tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
+                                                                      const map::Volume& volume,
+                                                                      const placement::ClosedVolume& closed);
 
 }  // namespace drtv::bake

@@ -45,12 +45,16 @@ ItemDigest digest_of_interior(const InteriorVolume& interior) {
 ItemDigest shape_of_light(const map::Light& light) {
     map::Hasher hasher;
     hasher.add(light.colour);
-    for (const float value : {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians}) hasher.add(value);
+    for (const float value :
+         {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians})
+        hasher.add(value);
     hasher.add(light.direction);
     return half(hasher.finish());
 }
 
-auto order(const Item& item) { return std::tie(item.kind, item.digest); }
+auto order(const Item& item) {
+    return std::tie(item.kind, item.digest);
+}
 
 // Those of `a` that are not in `b`, as often as they are there more often.
 std::vector<Item> only_in(const std::vector<Item>& a, const std::vector<Item>& b) {
@@ -75,26 +79,52 @@ Inventory take_inventory(const World& world) {
     for (std::uint32_t n = 0; n < map.objects.size(); ++n) {
         const map::Object& object = map.objects[n];
         const bool shines = next_emissive < emissive.size() && emissive[next_emissive].object == n;
-        if (shines) ++next_emissive;
-        inventory.items.push_back({object.role == map::Role::vegetation ? ItemKind::vegetation : ItemKind::fixed, shines, half(object.digest), half(map.meshes[object.mesh].digest), object.bounds, object.name});
+        if (shines)
+            ++next_emissive;
+        inventory.items.push_back(
+            {object.role == map::Role::vegetation ? ItemKind::vegetation : ItemKind::fixed,
+             shines,
+             half(object.digest),
+             half(map.meshes[object.mesh].digest),
+             object.bounds,
+             object.name});
     }
     for (const map::Light& light : map.lights) {
-        if (!shines(light)) continue;
+        if (!shines(light))
+            continue;
         const bool sun = light.kind == map::LightKind::directional;
-        inventory.items.push_back({sun ? ItemKind::sun : ItemKind::lamp, false, half(light.digest), shape_of_light(light), sun ? map::Bounds() : point(light.position), light.name});
+        inventory.items.push_back({sun ? ItemKind::sun : ItemKind::lamp,
+                                   false,
+                                   half(light.digest),
+                                   shape_of_light(light),
+                                   sun ? map::Bounds() : point(light.position),
+                                   light.name});
     }
     for (const map::ManualProbe& probe : map.probes) {
-        inventory.items.push_back({ItemKind::manual_probe, false, digest_of_probe(probe.position), {}, point(glm::vec3(probe.position)), probe.name});
+        inventory.items.push_back({ItemKind::manual_probe,
+                                   false,
+                                   digest_of_probe(probe.position),
+                                   {},
+                                   point(glm::vec3(probe.position)),
+                                   probe.name});
     }
     for (const map::Volume& volume : map.volumes) {
-        if (volume.kind != map::VolumeKind::no_probes) continue;
+        if (volume.kind != map::VolumeKind::no_probes)
+            continue;
         map::Bounds bounds;
-        for (const glm::dvec3& position : volume.positions) bounds.extend(glm::vec3(position));
+        for (const glm::dvec3& position : volume.positions)
+            bounds.extend(glm::vec3(position));
         inventory.items.push_back({ItemKind::no_probes, false, half(volume.digest), {}, bounds, volume.name});
     }
     for (const InteriorVolume& interior : world.interiors()) {
-        if (!interior.probe) continue;  // no file holds it
-        inventory.items.push_back({ItemKind::interior, false, digest_of_interior(interior), {}, point(placement::metres(*interior.probe)), interior.name});
+        if (!interior.probe)
+            continue;  // no file holds it
+        inventory.items.push_back({ItemKind::interior,
+                                   false,
+                                   digest_of_interior(interior),
+                                   {},
+                                   point(placement::metres(*interior.probe)),
+                                   interior.name});
     }
     std::ranges::stable_sort(inventory.items, {}, order);
     return inventory;
@@ -105,31 +135,43 @@ std::vector<std::uint8_t> encode_inventory(const Inventory& inventory) {
     StoredWriter writer;
     writer.add(magic);
     writer.add(static_cast<std::uint64_t>(inventory.items.size()));
-    for (const Item& item : inventory.items) writer.add(static_cast<std::uint8_t>(static_cast<unsigned>(item.kind) | (item.emissive ? 128u : 0u)));
-    for (const Item& item : inventory.items) writer.add(item.digest);
-    for (const Item& item : inventory.items) writer.add(item.shape);
-    for (const Item& item : inventory.items) writer.add(item.bounds);
-    for (const Item& item : inventory.items) writer.add_text(item.name);
+    for (const Item& item : inventory.items)
+        writer.add(static_cast<std::uint8_t>(static_cast<unsigned>(item.kind) | (item.emissive ? 128u : 0u)));
+    for (const Item& item : inventory.items)
+        writer.add(item.digest);
+    for (const Item& item : inventory.items)
+        writer.add(item.shape);
+    for (const Item& item : inventory.items)
+        writer.add(item.bounds);
+    for (const Item& item : inventory.items)
+        writer.add_text(item.name);
     return writer.compressed();
 }
 
 std::optional<Inventory> decode_inventory(std::span<const std::uint8_t> bytes) {
     StoredReader reader(bytes);
-    if (reader.read<std::uint64_t>() != magic) return std::nullopt;
+    if (reader.read<std::uint64_t>() != magic)
+        return std::nullopt;
     const auto count = reader.read<std::uint64_t>();
     Inventory inventory;
     for (std::uint64_t n = 0; n < count && reader.sound(); ++n) {
         const auto kind = reader.read<std::uint8_t>();
-        if ((kind & 127u) > static_cast<unsigned>(ItemKind::interior)) return std::nullopt;
+        if ((kind & 127u) > static_cast<unsigned>(ItemKind::interior))
+            return std::nullopt;
         Item& item = inventory.items.emplace_back();
         item.kind = static_cast<ItemKind>(kind & 127u);
         item.emissive = kind >= 128;
     }
-    for (Item& item : inventory.items) item.digest = reader.read<ItemDigest>();
-    for (Item& item : inventory.items) item.shape = reader.read<ItemDigest>();
-    for (Item& item : inventory.items) item.bounds = reader.read<map::Bounds>();
-    for (Item& item : inventory.items) item.name = reader.read_text();
-    if (!reader.complete()) return std::nullopt;
+    for (Item& item : inventory.items)
+        item.digest = reader.read<ItemDigest>();
+    for (Item& item : inventory.items)
+        item.shape = reader.read<ItemDigest>();
+    for (Item& item : inventory.items)
+        item.bounds = reader.read<map::Bounds>();
+    for (Item& item : inventory.items)
+        item.name = reader.read_text();
+    if (!reader.complete())
+        return std::nullopt;
     return inventory;
 }
 
@@ -157,25 +199,38 @@ std::string describe(const Change& change) {
     const auto kind = [&]() -> const char* {
         switch (change.item().kind) {
             case ItemKind::fixed:
-            case ItemKind::vegetation: return "an object";
-            case ItemKind::lamp: return "a lamp";
-            case ItemKind::sun: return "a sun";
-            case ItemKind::manual_probe: return "a probe";
-            case ItemKind::no_probes: return "a no_probes volume";
-            case ItemKind::interior: return "an interior";
+            case ItemKind::vegetation:
+                return "an object";
+            case ItemKind::lamp:
+                return "a lamp";
+            case ItemKind::sun:
+                return "a sun";
+            case ItemKind::manual_probe:
+                return "a probe";
+            case ItemKind::no_probes:
+                return "a no_probes volume";
+            case ItemKind::interior:
+                return "an interior";
         }
         return "something";
     };
     const auto what = [&]() -> const char* {
         switch (change.kind) {
-            case ChangeKind::added: return "was added";
-            case ChangeKind::removed: return "was deleted";
-            case ChangeKind::moved: return "moved";
-            case ChangeKind::changed: return "changed";
+            case ChangeKind::added:
+                return "was added";
+            case ChangeKind::removed:
+                return "was deleted";
+            case ChangeKind::moved:
+                return "moved";
+            case ChangeKind::changed:
+                return "changed";
         }
         return "changed";
     };
-    return fmt::format("{} {}", change.item().name.empty() ? std::string(kind()) + " without a name" : change.item().name, what());
+    return fmt::format(
+        "{} {}",
+        change.item().name.empty() ? std::string(kind()) + " without a name" : change.item().name,
+        what());
 }
 
 }  // namespace drtv::bake

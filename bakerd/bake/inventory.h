@@ -1,5 +1,5 @@
-// All that a bake of a map can depend on, without the geometry itself: what stands where, by digest. Two inventories tell what changed between
-// two maps.
+// All that a bake of a map can depend on, without the geometry itself: what stands where, by digest. Two
+// inventories tell what changed between two maps.
 #pragma once
 
 #include "bakerd/bake/world.h"
@@ -23,8 +23,10 @@ struct Item {
     ItemKind kind = ItemKind::fixed;
     bool emissive = false;  // an object that shines
     ItemDigest digest{};    // of all that can change a bake
-    ItemDigest shape{};     // of an object's mesh, of a light without its place: tells a move from another change
-    map::Bounds bounds;     // world; of lamps and manual probes a point; of an interior its probe's place; of a sun none
+    ItemDigest
+        shape{};  // of an object's mesh, of a light without its place: tells a move from another change
+    map::Bounds
+        bounds;  // world; of lamps and manual probes a point; of an interior its probe's place; of a sun none
     std::string name;
 
     bool operator==(const Item& other) const { return kind == other.kind && digest == other.digest; }

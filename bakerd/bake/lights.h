@@ -14,8 +14,8 @@
 
 namespace drtv::bake {
 
-// glTF's units are photometric. One watt counts as this many lumens (the peak of the eye's efficacy, as Blender's
-// exporter has it): candela become W/sr, lux W/m2, nits W/(sr m2), divided by it.
+// glTF's units are photometric. One watt counts as this many lumens (the peak of the eye's efficacy, as
+// Blender's exporter has it): candela become W/sr, lux W/m2, nits W/(sr m2), divided by it.
 inline constexpr float lumens_per_watt = 683;
 
 // Nearer to a point light than this, its inverse square stays as it is: it stands in no surface.
@@ -24,9 +24,9 @@ inline constexpr float least_light_distance_m = 0.01f;
 // A point or spot light.
 struct PointLight {
     glm::vec3 position{};
-    glm::vec3 intensity{};  // W/sr
-    float range_m = 0;      // 0: unlimited
-    glm::vec3 direction{};  // of a spot
+    glm::vec3 intensity{};                  // W/sr
+    float range_m = 0;                      // 0: unlimited
+    glm::vec3 direction{};                  // of a spot
     float cone_scale = 0, cone_offset = 1;  // KHR_lights_punctual; (0, 1) shines all around
 
     // Irradiance of a surface at `point` that faces the light, W/m2, without shadows.
@@ -42,18 +42,19 @@ struct Sun {
 struct EmissiveObject {
     struct Triangle {
         std::uint32_t primitive, triangle;
-        glm::vec3 a, b, c;      // world, counter-clockwise seen from the front
+        glm::vec3 a, b, c;  // world, counter-clockwise seen from the front
         bool both_sides;
-        float share;            // the probability of being drawn
-        float share_before;     // sum of those before it
+        float share;         // the probability of being drawn
+        float share_before;  // sum of those before it
     };
     std::uint32_t object = 0;  // of the map
     glm::vec3 centre{};
     float radius_m = 0;
-    float power = 0;  // W / pi, about
-    float radiance = 0;  // of its brightest material, at most, W/(sr m2)
-    std::vector<Triangle> triangles;                     // by primitive and triangle
-    std::vector<std::vector<std::uint32_t>> numbers;     // [primitive][triangle] -> index into triangles, or UINT32_MAX
+    float power = 0;                  // W / pi, about
+    float radiance = 0;               // of its brightest material, at most, W/(sr m2)
+    std::vector<Triangle> triangles;  // by primitive and triangle
+    std::vector<std::vector<std::uint32_t>>
+        numbers;  // [primitive][triangle] -> index into triangles, or UINT32_MAX
 
     [[nodiscard]] const Triangle* find(std::uint32_t primitive, std::uint32_t triangle) const;
 };
@@ -81,15 +82,15 @@ class StaticLights {
     std::vector<EmissiveObject> emissive_;  // in the map's order of objects
 };
 
-// Light that cannot bring more than `faint`, W/m2 over the probability of its draw, is kept only so often: when the number in
-// [0, 1) is below its share of that. Then it counts as if it brought that much, so that nothing is lost on average. A faint of
-// 0 keeps all.
+// Light that cannot bring more than `faint`, W/m2 over the probability of its draw, is kept only so often:
+// when the number in [0, 1) is below its share of that. Then it counts as if it brought that much, so that
+// nothing is lost on average. A faint of 0 keeps all.
 struct Roulette {
     float number = 0, faint = 0;
 };
 
-// The lights that a probe can know of, in a tree from which one is drawn with a probability that falls with the square of
-// the distance (Conty and Kulla 2018, without their cones). A function of these lights alone.
+// The lights that a probe can know of, in a tree from which one is drawn with a probability that falls with
+// the square of the distance (Conty and Kulla 2018, without their cones). A function of these lights alone.
 class LightTree {
   public:
     LightTree(const StaticLights& lights, const glm::vec3& centre, float reach_m);
@@ -103,7 +104,7 @@ class LightTree {
         Item item;
         float probability = 0;  // of the draw; 0 when it was given up
         float survival = 1;     // of the roulette
-        double rest = 0;  // of the number that chose, uniform in [0, 1) again
+        double rest = 0;        // of the number that chose, uniform in [0, 1) again
     };
 
     [[nodiscard]] bool empty() const { return nodes_.empty(); }
@@ -111,7 +112,8 @@ class LightTree {
     [[nodiscard]] std::span<const PointLight* const> points() const { return points_; }
     // REQUIRES: not empty.
     [[nodiscard]] Drawn draw(const glm::vec3& from, double u, const Roulette& roulette) const;
-    // The emissive object of that number with the probability with which `draw` gives it; 0 when it is not in the tree.
+    // The emissive object of that number with the probability with which `draw` gives it; 0 when it is not in
+    // the tree.
     [[nodiscard]] Drawn find(const glm::vec3& from, std::uint32_t object) const;
 
   private:

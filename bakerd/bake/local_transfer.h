@@ -1,5 +1,5 @@
-// Local radiance transfer (DESIGN section 2; s22-s23, s30-s31; Kristensen et al. 2005): what the bounce of a white
-// point light at each source brings to each probe.
+// Local radiance transfer (DESIGN section 2; s22-s23, s30-s31; Kristensen et al. 2005): what the bounce of a
+// white point light at each source brings to each probe.
 #pragma once
 
 #include "bakerd/bake/footprint_recorder.h"
@@ -15,7 +15,8 @@
 
 namespace drtv::bake {
 
-// Around a light the inverse square stops to grow at this distance, so that a lamp at a wall does not burn it out.
+// Around a light the inverse square stops to grow at this distance, so that a lamp at a wall does not burn it
+// out.
 inline constexpr float local_least_distance_m = 0.5f;
 
 struct LocalSettings {
@@ -31,15 +32,22 @@ struct LocalLight {
     std::vector<LocalCoefficients> pairs;  // [receiver * source_count + source]
     std::uint64_t rays = 0;                // of paths and shadows
 
-    [[nodiscard]] const LocalCoefficients& at(std::size_t receiver, std::size_t source) const { return pairs[receiver * source_count + source]; }
+    [[nodiscard]] const LocalCoefficients& at(std::size_t receiver, std::size_t source) const {
+        return pairs[receiver * source_count + source];
+    }
 };
 
 // Numbers per path that `samples` should have.
 [[nodiscard]] std::uint32_t local_sample_dimensions(std::uint32_t bounces);
 
-// Positions in units of 2^-10 m; samples.count() paths are traced from each. The first `receiver_count` sources are the receivers. A pure function of the triangles
-// within reach of them and of the arguments. Runs on the calling thread's TBB arena; the same numbers on any threads.
-[[nodiscard]] LocalLight integrate_local(const trace::Scene& scene, std::span<const glm::ivec3> sources, std::size_t receiver_count, const SampleTable& samples,
-                                         const LocalSettings& settings, FootprintRecorders* recorders = nullptr);
+// Positions in units of 2^-10 m; samples.count() paths are traced from each. The first `receiver_count`
+// sources are the receivers. A pure function of the triangles within reach of them and of the arguments. Runs
+// on the calling thread's TBB arena; the same numbers on any threads.
+[[nodiscard]] LocalLight integrate_local(const trace::Scene& scene,
+                                         std::span<const glm::ivec3> sources,
+                                         std::size_t receiver_count,
+                                         const SampleTable& samples,
+                                         const LocalSettings& settings,
+                                         FootprintRecorders* recorders = nullptr);
 
 }  // namespace drtv::bake

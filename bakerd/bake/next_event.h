@@ -1,4 +1,5 @@
-// Light that comes straight from a static light to a point: punctual lights, suns, points of emissive surfaces.
+// Light that comes straight from a static light to a point: punctual lights, suns, points of emissive
+// surfaces.
 #pragma once
 
 #include "bakerd/bake/lights.h"
@@ -12,14 +13,15 @@
 
 namespace drtv::bake {
 
-// Irradiance of a surface that faces `direction`; or for `density` > 0 radiance along it, drawn with that density.
+// Irradiance of a surface that faces `direction`; or for `density` > 0 radiance along it, drawn with that
+// density.
 struct Incident {
     glm::vec3 direction{};
     glm::vec3 light{};      // already divided by the probability of the draw
     glm::vec3 target{};     // the light's place; of a sun, nothing
     float distance_m = 0;   // of the light; of a sun, to the end of the reach
     float clearance_m = 0;  // before the target, within which the light's own surface lies; of a sun, below 0
-    float density = 0;      // per steradian with which next event draws this direction; 0: no path could find it
+    float density = 0;  // per steradian with which next event draws this direction; 0: no path could find it
 };
 
 // Of one probe: all lights within its reach, and shadows inside it.
@@ -37,10 +39,15 @@ class NextEvent {
     [[nodiscard]] Incident towards(const PointLight& light, const glm::vec3& from) const;
     [[nodiscard]] Incident towards(const Sun& sun, const glm::vec3& from) const;
     // One light of the tree by the three numbers; nothing where the draw sends no light.
-    [[nodiscard]] std::optional<Incident> draw(const glm::vec3& from, const std::array<double, 3>& u, const Roulette& roulette) const;
+    [[nodiscard]] std::optional<Incident> draw(const glm::vec3& from,
+                                               const std::array<double, 3>& u,
+                                               const Roulette& roulette) const;
 
-    // The density with which `draw` gives the direction in which a path from `from` has hit an emissive surface, per steradian.
-    [[nodiscard]] float density_of(const glm::vec3& from, const glm::vec3& direction, const trace::Hit& hit) const;
+    // The density with which `draw` gives the direction in which a path from `from` has hit an emissive
+    // surface, per steradian.
+    [[nodiscard]] float density_of(const glm::vec3& from,
+                                   const glm::vec3& direction,
+                                   const trace::Hit& hit) const;
 
     // The ray on which nothing may lie, from `start`, a free point on the right side.
     [[nodiscard]] static trace::Ray shadow_ray(const glm::vec3& start, const Incident& incident);

@@ -1,5 +1,5 @@
-// Where a sector's probes stand, as its file will say: found for the sector itself, and for its neighbours, whose
-// probes are sources of its local transfer.
+// Where a sector's probes stand, as its file will say: found for the sector itself, and for its neighbours,
+// whose probes are sources of its local transfer.
 #pragma once
 
 #include "bakerd/bake/footprint.h"
@@ -21,7 +21,8 @@ namespace drtv::bake {
 
 struct PlacedSector {
     Sector sector;  // coordinate, positions and kinds; all else is still empty
-    std::vector<placement::Position> positions;  // of its probes, as stored: all that follows is a function of these
+    std::vector<placement::Position>
+        positions;  // of its probes, as stored: all that follows is a function of these
     placement::Report report;
     std::vector<SolidTest> solid_tests;  // on which all this rests
 };
@@ -39,10 +40,15 @@ struct PlacementVolumes {
 [[nodiscard]] float scene_distance_m(const Settings& settings);
 
 // With `solid_tests`, each is appended to it. REQUIRES: the functions are used while scene and tests live.
-[[nodiscard]] placement::Surroundings surroundings_of(const trace::Scene& scene, float reach_m, std::vector<SolidTest>* solid_tests = nullptr);
+[[nodiscard]] placement::Surroundings surroundings_of(const trace::Scene& scene,
+                                                      float reach_m,
+                                                      std::vector<SolidTest>* solid_tests = nullptr);
 
-// Fails with a sentence (too many manual probes; too high a sector). REQUIRES: the scene holds all within reach and within
-// placement's margin of the sector.
-[[nodiscard]] tl::expected<PlacedSector, std::string> place_sector(const PlacementVolumes& volumes, const trace::Scene& scene, map::SectorCoordinate coordinate, const Settings& settings);
+// Fails with a sentence (too many manual probes; too high a sector). REQUIRES: the scene holds all within
+// reach and within placement's margin of the sector.
+[[nodiscard]] tl::expected<PlacedSector, std::string> place_sector(const PlacementVolumes& volumes,
+                                                                   const trace::Scene& scene,
+                                                                   map::SectorCoordinate coordinate,
+                                                                   const Settings& settings);
 
 }  // namespace drtv::bake

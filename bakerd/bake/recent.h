@@ -15,7 +15,8 @@ class Recent {
   public:
     explicit Recent(std::size_t most) : most_(most) {}
 
-    // `make` gives the value. It runs outside the lock: other keys need not wait. When it throws, the next one tries again.
+    // `make` gives the value. It runs outside the lock: other keys need not wait. When it throws, the next
+    // one tries again.
     template <class Make>
     [[nodiscard]] std::shared_ptr<const Value> get(const Key& key, Make make) {
         const std::shared_ptr<Slot> slot = slot_of(key);
@@ -33,10 +34,15 @@ class Recent {
 
     std::shared_ptr<Slot> slot_of(const Key& key) {
         const std::lock_guard lock(mutex_);
-        const auto found = std::find_if(slots_.begin(), slots_.end(), [&](const std::shared_ptr<Slot>& slot) { return slot->key == key; });
-        if (found != slots_.end()) slots_.splice(slots_.begin(), slots_, found);
-        else slots_.push_front(std::make_shared<Slot>(key));
-        while (slots_.size() > most_) slots_.pop_back();
+        const auto found = std::find_if(slots_.begin(), slots_.end(), [&](const std::shared_ptr<Slot>& slot) {
+            return slot->key == key;
+        });
+        if (found != slots_.end())
+            slots_.splice(slots_.begin(), slots_, found);
+        else
+            slots_.push_front(std::make_shared<Slot>(key));
+        while (slots_.size() > most_)
+            slots_.pop_back();
         return slots_.front();
     }
 

@@ -39,15 +39,18 @@ using Directions = std::array<std::uint32_t, 32>;
 Directions direction_numbers(std::uint32_t dimension) {
     Directions v{};
     if (dimension == 0) {
-        for (std::uint32_t k = 0; k < 32; ++k) v[k] = 1u << (31 - k);
+        for (std::uint32_t k = 0; k < 32; ++k)
+            v[k] = 1u << (31 - k);
         return v;
     }
     const Polynomial& p = polynomials[dimension - 1];
-    for (std::uint32_t k = 0; k < p.degree; ++k) v[k] = p.m[k] << (31 - k);
+    for (std::uint32_t k = 0; k < p.degree; ++k)
+        v[k] = p.m[k] << (31 - k);
     for (std::uint32_t k = p.degree; k < 32; ++k) {
         v[k] = v[k - p.degree] ^ (v[k - p.degree] >> p.degree);
         for (std::uint32_t q = 1; q < p.degree; ++q) {
-            if ((p.coefficients >> (p.degree - 1 - q) & 1u) != 0) v[k] ^= v[k - q];
+            if ((p.coefficients >> (p.degree - 1 - q) & 1u) != 0)
+                v[k] ^= v[k - q];
         }
     }
     return v;
@@ -65,7 +68,8 @@ std::uint32_t owen_scramble(std::uint32_t word, std::uint32_t dimension) {
     std::uint32_t flips = 0;
     for (std::uint32_t bit = 0; bit < 32; ++bit) {
         const std::uint64_t prefix = bit == 0 ? 0 : word >> (32 - bit);
-        const std::uint64_t coin = mixed((std::uint64_t{dimension} << 38 | std::uint64_t{bit} << 32 | prefix) + 0x9E3779B97F4A7C15u);
+        const std::uint64_t coin =
+            mixed((std::uint64_t{dimension} << 38 | std::uint64_t{bit} << 32 | prefix) + 0x9E3779B97F4A7C15u);
         flips |= static_cast<std::uint32_t>(coin >> 63) << (31 - bit);
     }
     return word ^ flips;
@@ -75,26 +79,33 @@ std::uint32_t owen_scramble(std::uint32_t word, std::uint32_t dimension) {
 glm::vec2 cos_sin_turn(float u) {
     const float quarter = std::floor(u * 4 + 0.5f);
     const float x = (u - quarter * 0.25f) * 6.28318530717958648f, x2 = x * x;
-    const float s = x * (1 + x2 * (-1 / 6.0f + x2 * (1 / 120.0f + x2 * (-1 / 5040.0f + x2 * (1 / 362880.0f)))));
+    const float s =
+        x * (1 + x2 * (-1 / 6.0f + x2 * (1 / 120.0f + x2 * (-1 / 5040.0f + x2 * (1 / 362880.0f)))));
     const float c = 1 + x2 * (-0.5f + x2 * (1 / 24.0f + x2 * (-1 / 720.0f + x2 * (1 / 40320.0f))));
     switch (static_cast<int>(quarter) & 3) {
-        case 0: return {c, s};
-        case 1: return {-s, c};
-        case 2: return {-c, -s};
-        default: return {s, -c};
+        case 0:
+            return {c, s};
+        case 1:
+            return {-s, c};
+        case 2:
+            return {-c, -s};
+        default:
+            return {s, -c};
     }
 }
 
 }  // namespace
 
-SampleTable::SampleTable(std::uint32_t count, std::uint32_t dimensions) : count_(count), dimensions_(dimensions), words_(std::size_t{count} * dimensions) {
+SampleTable::SampleTable(std::uint32_t count, std::uint32_t dimensions)
+    : count_(count), dimensions_(dimensions), words_(std::size_t{count} * dimensions) {
     assert(dimensions <= max_sample_dimensions);
     for (std::uint32_t d = 0; d < dimensions; ++d) {
         const Directions v = direction_numbers(d);
         for (std::uint32_t n = 0; n < count; ++n) {
             std::uint32_t word = 0;
             for (std::uint32_t k = 0; k < 32; ++k) {
-                if ((n >> k & 1u) != 0) word ^= v[k];
+                if ((n >> k & 1u) != 0)
+                    word ^= v[k];
             }
             words_[std::size_t{n} * dimensions + d] = owen_scramble(word, d);
         }
@@ -103,7 +114,9 @@ SampleTable::SampleTable(std::uint32_t count, std::uint32_t dimensions) : count_
 }
 
 SampleTable::SampleTable(std::vector<std::uint32_t> words, std::uint32_t dimensions)
-    : count_(static_cast<std::uint32_t>(words.size() / dimensions)), dimensions_(dimensions), words_(std::move(words)) {
+    : count_(static_cast<std::uint32_t>(words.size() / dimensions)),
+      dimensions_(dimensions),
+      words_(std::move(words)) {
     put_side_by_side();
 }
 
@@ -111,14 +124,17 @@ void SampleTable::put_side_by_side() {
     order_.resize(count_);
     std::iota(order_.begin(), order_.end(), 0u);
     for (std::uint32_t from = 0, to = first_part; from < count_; from = to, to *= 2) {
-        std::sort(order_.begin() + from, order_.begin() + std::min(to, count_), [&](std::uint32_t a, std::uint32_t b) { return place_of(a) < place_of(b); });
+        std::sort(order_.begin() + from,
+                  order_.begin() + std::min(to, count_),
+                  [&](std::uint32_t a, std::uint32_t b) { return place_of(a) < place_of(b); });
     }
 }
 
 // The place of the first two dimensions along a Z-order curve.
 std::uint64_t SampleTable::place_of(std::uint32_t n) const {
     std::uint64_t place = 0;
-    for (std::uint32_t bit = 32; bit-- > 0;) place = place << 2 | std::uint64_t{point(n)[0] >> bit & 1u} << 1 | (point(n)[1] >> bit & 1u);
+    for (std::uint32_t bit = 32; bit-- > 0;)
+        place = place << 2 | std::uint64_t{point(n)[0] >> bit & 1u} << 1 | (point(n)[1] >> bit & 1u);
     return place;
 }
 
@@ -135,7 +151,8 @@ std::array<std::uint32_t, max_sample_dimensions> digital_shift(const glm::ivec3&
 }
 
 std::uint32_t hashed(std::uint32_t key, std::uint32_t n, std::uint32_t dimension) {
-    return static_cast<std::uint32_t>(mixed(mixed((std::uint64_t{key} << 32 | n) + 0x9E3779B97F4A7C15u) ^ dimension) >> 32);
+    return static_cast<std::uint32_t>(
+        mixed(mixed((std::uint64_t{key} << 32 | n) + 0x9E3779B97F4A7C15u) ^ dimension) >> 32);
 }
 
 glm::vec3 uniform_sphere(glm::vec2 u) {

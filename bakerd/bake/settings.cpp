@@ -12,18 +12,23 @@ namespace drtv::bake {
 namespace {
 
 template <class Number>
-tl::expected<Number, std::string> parse(std::string_view key, std::string_view value, Number least, Number most) {
+tl::expected<Number, std::string> parse(std::string_view key,
+                                        std::string_view value,
+                                        Number least,
+                                        Number most) {
     Number number{};
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
     if (error != std::errc() || end != value.data() + value.size() || !(number >= least && number <= most)) {
-        return tl::unexpected(fmt::format("{} must be a number from {} to {}, not '{}'", key, least, most, value));
+        return tl::unexpected(
+            fmt::format("{} must be a number from {} to {}, not '{}'", key, least, most, value));
     }
     return number;
 }
 
 template <class Number>
 tl::expected<void, std::string> assign(Number& field, const tl::expected<Number, std::string>& parsed) {
-    if (!parsed) return tl::unexpected(parsed.error());
+    if (!parsed)
+        return tl::unexpected(parsed.error());
     field = *parsed;
     return {};
 }
@@ -31,7 +36,8 @@ tl::expected<void, std::string> assign(Number& field, const tl::expected<Number,
 }  // namespace
 
 tl::expected<Settings, std::string> preset(std::string_view name) {
-    if (name == "console") return Settings{};
+    if (name == "console")
+        return Settings{};
     if (name == "pc") {
         Settings pc;
         pc.rays = 4096;
@@ -47,21 +53,33 @@ tl::expected<Settings, std::string> preset(std::string_view name) {
 }
 
 tl::expected<void, std::string> set(Settings& settings, std::string_view key, std::string_view value) {
-    if (key == "rays") return assign(settings.rays, parse<std::uint32_t>(key, value, 16, 65536));
-    if (key == "bounces") return assign(settings.bounces, parse<std::uint32_t>(key, value, 0, 8));
-    if (key == "reach") return assign(settings.reach_m, parse<float>(key, value, 1, 8192));
-    if (key == "min_distance") return assign(settings.min_distance_m, parse<float>(key, value, 1, 16));
-    if (key == "error") return assign(settings.error, parse<float>(key, value, 0, 1));
-    if (key == "lprt_bounces") return assign(settings.local_bounces, parse<std::uint32_t>(key, value, 1, 4));
-    if (key == "lprt_rays") return assign(settings.local_rays, parse<std::uint32_t>(key, value, 16, 4096));
-    if (key == "tolerance") return assign(settings.tolerance, parse<float>(key, value, 0, 0.0625f));
+    if (key == "rays")
+        return assign(settings.rays, parse<std::uint32_t>(key, value, 16, 65536));
+    if (key == "bounces")
+        return assign(settings.bounces, parse<std::uint32_t>(key, value, 0, 8));
+    if (key == "reach")
+        return assign(settings.reach_m, parse<float>(key, value, 1, 8192));
+    if (key == "min_distance")
+        return assign(settings.min_distance_m, parse<float>(key, value, 1, 16));
+    if (key == "error")
+        return assign(settings.error, parse<float>(key, value, 0, 1));
+    if (key == "lprt_bounces")
+        return assign(settings.local_bounces, parse<std::uint32_t>(key, value, 1, 4));
+    if (key == "lprt_rays")
+        return assign(settings.local_rays, parse<std::uint32_t>(key, value, 16, 4096));
+    if (key == "tolerance")
+        return assign(settings.tolerance, parse<float>(key, value, 0, 0.0625f));
     if (key == "lprt") {
         const auto parsed = parse<std::uint32_t>(key, value, 0, 1);
-        if (!parsed) return tl::unexpected(parsed.error());
+        if (!parsed)
+            return tl::unexpected(parsed.error());
         settings.local_transfer = *parsed == 1;
         return {};
     }
-    return tl::unexpected(fmt::format("the setting '{}' is unknown: there are rays, bounces, reach, min_distance, error, lprt, lprt_bounces, lprt_rays and tolerance", key));
+    return tl::unexpected(
+        fmt::format("the setting '{}' is unknown: there are rays, bounces, reach, min_distance, error, lprt, "
+                    "lprt_bounces, lprt_rays and tolerance",
+                    key));
 }
 
 map::Digest settings_key(const Settings& settings) {

@@ -16,12 +16,15 @@ namespace {
 // Nearer to a lamp than this counts as this: far above any tolerance all the same.
 constexpr float least_distance_m = 0.001f;
 
-float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
+float brightest(const glm::vec3& light) {
+    return std::max({light.x, light.y, light.z});
+}
 
 // Of light of that radiance at each of so many points of a path.
 float of_path(float radiance, float scattered, std::uint32_t points) {
     float sum = 0, left = 1;
-    for (std::uint32_t point = 0; point < points; ++point, left *= scattered) sum += left;
+    for (std::uint32_t point = 0; point < points; ++point, left *= scattered)
+        sum += left;
     return sum * radiance / static_irradiance_range;
 }
 
@@ -32,18 +35,25 @@ struct NearLamp {
     float distance_m;
 };
 
-float irradiance(const NearLamp& lamp, float distance_m) { return lamp.intensity / (distance_m * distance_m); }
+float irradiance(const NearLamp& lamp, float distance_m) {
+    return lamp.intensity / (distance_m * distance_m);
+}
 
-// What all lamps together bring at most to any one surface. A point that has one of them nearest is at least half way from that to each other.
+// What all lamps together bring at most to any one surface. A point that has one of them nearest is at least
+// half way from that to each other.
 float most_irradiance(const std::vector<NearLamp>& lamps) {
     constexpr std::size_t most_in_pairs = 2048;
     float most = 0, sum = 0;
-    for (const NearLamp& lamp : lamps) sum += irradiance(lamp, lamp.distance_m);
-    if (lamps.size() > most_in_pairs) return sum;
+    for (const NearLamp& lamp : lamps)
+        sum += irradiance(lamp, lamp.distance_m);
+    if (lamps.size() > most_in_pairs)
+        return sum;
     for (const NearLamp& nearest : lamps) {
         float together = irradiance(nearest, nearest.distance_m);
         for (const NearLamp& lamp : lamps) {
-            if (&lamp != &nearest) together += irradiance(lamp, std::max(lamp.distance_m, glm::distance(lamp.position, nearest.position) / 2));
+            if (&lamp != &nearest)
+                together += irradiance(
+                    lamp, std::max(lamp.distance_m, glm::distance(lamp.position, nearest.position) / 2));
         }
         most = std::max(most, together);
     }
@@ -52,32 +62,50 @@ float most_irradiance(const std::vector<NearLamp>& lamps) {
 
 }  // namespace
 
-float static_gain(const StaticLights& lights, float scattered, const trace::Scene& scene, std::span<const placement::Position> probes, const Settings& settings) {
+float static_gain(const StaticLights& lights,
+                  float scattered,
+                  const trace::Scene& scene,
+                  std::span<const placement::Position> probes,
+                  const Settings& settings) {
     const auto within_reach = [&](const glm::vec3& place, float radius_m) {
-        return std::ranges::any_of(probes, [&](const placement::Position& probe) { return glm::distance(placement::metres(probe), place) - radius_m <= settings.reach_m; });
+        return std::ranges::any_of(probes, [&](const placement::Position& probe) {
+            return glm::distance(placement::metres(probe), place) - radius_m <= settings.reach_m;
+        });
     };
     std::vector<NearLamp> lamps;
     for (const PointLight& lamp : lights.points()) {
-        if (within_reach(lamp.position, 0)) lamps.push_back({lamp.position, brightest(lamp.intensity), std::max(scene.distance_to_surface(lamp.position, settings.reach_m), least_distance_m)});
+        if (within_reach(lamp.position, 0))
+            lamps.push_back(
+                {lamp.position,
+                 brightest(lamp.intensity),
+                 std::max(scene.distance_to_surface(lamp.position, settings.reach_m), least_distance_m)});
     }
     float irradiance = most_irradiance(lamps), emitted = 0;
-    for (const Sun& sun : lights.suns()) irradiance += brightest(sun.irradiance);
+    for (const Sun& sun : lights.suns())
+        irradiance += brightest(sun.irradiance);
     for (const EmissiveObject& emissive : lights.emissive()) {
-        if (within_reach(emissive.centre, emissive.radius_m)) emitted = std::max(emitted, emissive.radiance);
+        if (within_reach(emissive.centre, emissive.radius_m))
+            emitted = std::max(emitted, emissive.radiance);
     }
     // Emission is met at the end of the last ray too.
-    return of_path(irradiance * scattered * std::numbers::inv_pi_v<float>, scattered, settings.bounces) + of_path(emitted, scattered, settings.bounces + 1);
+    return of_path(irradiance * scattered * std::numbers::inv_pi_v<float>, scattered, settings.bounces) +
+           of_path(emitted, scattered, settings.bounces + 1);
 }
 
 // Any point of a box is at least as far from each lamp as the box.
-float static_gain(const StaticLights& lights, float scattered, std::span<const map::Bounds> boxes, const Settings& settings) {
+float static_gain(const StaticLights& lights,
+                  float scattered,
+                  std::span<const map::Bounds> boxes,
+                  const Settings& settings) {
     float most = 0;
     for (const map::Bounds& box : boxes) {
         float irradiance = 0;
         for (const PointLight& lamp : lights.points()) {
-            const float distance_m = std::max(glm::distance(lamp.position, glm::clamp(lamp.position, box.low, box.high)), least_distance_m);
+            const float distance_m = std::max(
+                glm::distance(lamp.position, glm::clamp(lamp.position, box.low, box.high)), least_distance_m);
             // Beyond, none that a probe knows of shines on what it can see.
-            if (distance_m <= 2 * settings.reach_m) irradiance += brightest(lamp.intensity) / (distance_m * distance_m);
+            if (distance_m <= 2 * settings.reach_m)
+                irradiance += brightest(lamp.intensity) / (distance_m * distance_m);
         }
         most = std::max(most, irradiance);
     }
@@ -86,7 +114,8 @@ float static_gain(const StaticLights& lights, float scattered, std::span<const m
 
 // Each of its terms has at most so many surfaces in it.
 float raised_gain(float gain, float scattered_before, float scattered_now, const Settings& settings) {
-    for (std::uint32_t bounce = 0; scattered_now > scattered_before && bounce < settings.bounces; ++bounce) gain *= scattered_now / scattered_before;
+    for (std::uint32_t bounce = 0; scattered_now > scattered_before && bounce < settings.bounces; ++bounce)
+        gain *= scattered_now / scattered_before;
     return gain;
 }
 

@@ -1,5 +1,7 @@
-// How much static light one path can bring at most: from each of its bounces, the radiance of the map's brightest surface where its lights are brightest. It is what a
-// path's weight is worth, where a change lets the path find something else. Taken for granted: that a light which is drawn brings no more than all of them together would.
+// How much static light one path can bring at most: from each of its bounces, the radiance of the map's
+// brightest surface where its lights are brightest. It is what a path's weight is worth, where a change lets
+// the path find something else. Taken for granted: that a light which is drawn brings no more than all of
+// them together would.
 #pragma once
 
 #include "bakerd/bake/lights.h"
@@ -12,14 +14,24 @@
 
 namespace drtv::bake {
 
-// Of all lights within reach of the probes, over static_irradiance_range; lamps shine on the surfaces of the scene, the nearest of each counts. 0 without lights. `scattered` is
-// trace::most_scattered.
-[[nodiscard]] float static_gain(const StaticLights& lights, float scattered, const trace::Scene& scene, std::span<const placement::Position> probes, const Settings& settings);
+// Of all lights within reach of the probes, over static_irradiance_range; lamps shine on the surfaces of the
+// scene, the nearest of each counts. 0 without lights. `scattered` is trace::most_scattered.
+[[nodiscard]] float static_gain(const StaticLights& lights,
+                                float scattered,
+                                const trace::Scene& scene,
+                                std::span<const placement::Position> probes,
+                                const Settings& settings);
 
 // The same of surfaces anywhere in the boxes, and of lamps alone.
-[[nodiscard]] float static_gain(const StaticLights& lights, float scattered, std::span<const map::Bounds> boxes, const Settings& settings);
+[[nodiscard]] float static_gain(const StaticLights& lights,
+                                float scattered,
+                                std::span<const map::Bounds> boxes,
+                                const Settings& settings);
 
 // A gain that was found for surfaces of `scattered_before`, where there are brighter ones now.
-[[nodiscard]] float raised_gain(float gain, float scattered_before, float scattered_now, const Settings& settings);
+[[nodiscard]] float raised_gain(float gain,
+                                float scattered_before,
+                                float scattered_now,
+                                const Settings& settings);
 
 }  // namespace drtv::bake

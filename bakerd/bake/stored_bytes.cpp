@@ -12,13 +12,15 @@ constexpr std::uint64_t most_bytes = std::uint64_t{1} << 32;  // of a record: fa
 
 std::vector<std::uint8_t> StoredWriter::compressed() const {
     std::vector<std::uint8_t> packed(ZSTD_compressBound(bytes_.size()));
-    packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes_.data(), bytes_.size(), compression_level));
+    packed.resize(
+        ZSTD_compress(packed.data(), packed.size(), bytes_.data(), bytes_.size(), compression_level));
     return packed;
 }
 
 StoredReader::StoredReader(std::span<const std::uint8_t> compressed) {
     const unsigned long long size = ZSTD_getFrameContentSize(compressed.data(), compressed.size());
-    if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_bytes) return;
+    if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_bytes)
+        return;
     bytes_.resize(size);
     sound_ = ZSTD_decompress(bytes_.data(), bytes_.size(), compressed.data(), compressed.size()) == size;
 }

@@ -1,4 +1,5 @@
-// Records of the farm's cache: plain numbers one after the other, compressed as a whole. Readers survive any bytes.
+// Records of the farm's cache: plain numbers one after the other, compressed as a whole. Readers survive any
+// bytes.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@ namespace drtv::bake {
 class StoredWriter {
   public:
     template <class Value>
-        requires std::is_trivially_copyable_v<Value>
+    requires std::is_trivially_copyable_v<Value>
     void add(const Value& value) {
         const std::size_t at = bytes_.size();
         bytes_.resize(at + sizeof value);
@@ -23,7 +24,8 @@ class StoredWriter {
     template <class Value>
     void add_all(const std::vector<Value>& values) {
         add(static_cast<std::uint64_t>(values.size()));
-        for (const Value& value : values) add(value);
+        for (const Value& value : values)
+            add(value);
     }
     void add_text(const std::string& text) { add_all(std::vector<char>(text.begin(), text.end())); }
 
@@ -39,8 +41,7 @@ class StoredReader {
     explicit StoredReader(std::span<const std::uint8_t> compressed);
 
     template <class Value>
-        requires std::is_trivially_copyable_v<Value>
-    Value read() {
+    requires std::is_trivially_copyable_v<Value> Value read() {
         Value value{};
         if (bytes_.size() - at_ < sizeof value) {
             sound_ = false;
@@ -58,7 +59,8 @@ class StoredReader {
             return {};
         }
         std::vector<Value> values(count);
-        for (Value& value : values) value = read<Value>();
+        for (Value& value : values)
+            value = read<Value>();
         return values;
     }
     std::string read_text() {

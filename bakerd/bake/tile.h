@@ -8,6 +8,8 @@ namespace drtv::bake {
 inline constexpr int tile_shift = 3;
 inline constexpr int tile_sectors = 1 << tile_shift;  // along each axis
 
-[[nodiscard]] constexpr map::SectorCoordinate tile_of(map::SectorCoordinate sector) { return {sector.i >> tile_shift, sector.j >> tile_shift}; }
+[[nodiscard]] constexpr map::SectorCoordinate tile_of(map::SectorCoordinate sector) {
+    return {sector.i >> tile_shift, sector.j >> tile_shift};
+}
 
 }  // namespace drtv::bake

@@ -10,7 +10,8 @@
 namespace drtv::bake {
 namespace {
 
-// Sectors come tile by tile; two tiles are at work while one ends and the next begins, and up to four around a change.
+// Sectors come tile by tile; two tiles are at work while one ends and the next begins, and up to four around
+// a change.
 constexpr std::size_t kept_scenes = 4;
 
 // Two rows of tiles side by side; a placement is some kilobytes.
@@ -21,43 +22,65 @@ constexpr std::size_t kept_samples = 4;
 
 }  // namespace
 
-World::World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map, std::shared_ptr<trace::MeshShelf> shelf)
-    : geometry_(std::move(device), map, std::move(shelf)), lights_(map), most_scattered_(lights_.empty() ? trace::least_scattered : trace::most_scattered(*map)), scenes_(kept_scenes), placements_(kept_placements), samples_(kept_samples) {}
+World::World(std::shared_ptr<const trace::Device> device,
+             const std::shared_ptr<const map::Map>& map,
+             std::shared_ptr<trace::MeshShelf> shelf)
+    : geometry_(std::move(device), map, std::move(shelf)),
+      lights_(map),
+      most_scattered_(lights_.empty() ? trace::least_scattered : trace::most_scattered(*map)),
+      scenes_(kept_scenes),
+      placements_(kept_placements),
+      samples_(kept_samples) {}
 
-tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map, std::shared_ptr<trace::MeshShelf> shelf) {
+tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device,
+                                                              std::shared_ptr<const map::Map> map,
+                                                              std::shared_ptr<trace::MeshShelf> shelf) {
     constexpr std::size_t most_emissive = std::size_t{1} << 23;  // triangles: half a gigabyte
     if (const std::size_t count = emissive_triangles(*map); count > most_emissive) {
-        return tl::unexpected(fmt::format("the map's emissive surfaces have {} triangles, instances counted, over the limit of {}", count, most_emissive));
+        return tl::unexpected(fmt::format(
+            "the map's emissive surfaces have {} triangles, instances counted, over the limit of {}",
+            count,
+            most_emissive));
     }
     std::shared_ptr<World> world(new World(std::move(device), std::move(map), std::move(shelf)));
     auto sectors = map::sectors_with_ground(world->map());
-    if (!sectors) return tl::unexpected(sectors.error());
+    if (!sectors)
+        return tl::unexpected(sectors.error());
     world->sectors_ = std::move(*sectors);
     for (const map::Volume& volume : world->map().volumes) {
         auto closed = placement::ClosedVolume::make(volume.name, volume.positions, volume.triangles);
-        if (!closed) return tl::unexpected(closed.error());
+        if (!closed)
+            return tl::unexpected(closed.error());
         if (volume.kind == map::VolumeKind::no_probes) {
             world->no_probes_.push_back(std::move(*closed));
             continue;
         }
         auto interior = make_interior(world->map(), volume, *closed);
-        if (!interior) return tl::unexpected(interior.error());
+        if (!interior)
+            return tl::unexpected(interior.error());
         if (!interior->probe) {
-            world->warnings_.push_back(fmt::format("the interior '{}' names no probe and no probe node is inside it: no file holds it", interior->name));
+            world->warnings_.push_back(fmt::format(
+                "the interior '{}' names no probe and no probe node is inside it: no file holds it",
+                interior->name));
         } else if (!world->has_ground(interior->sector)) {
-            world->warnings_.push_back(fmt::format("the probe of the interior '{}' stands in sector ({}, {}), which has no ground and is not baked: no file holds the interior", interior->name, interior->sector.i,
-                                                   interior->sector.j));
+            world->warnings_.push_back(
+                fmt::format("the probe of the interior '{}' stands in sector ({}, {}), which has no ground "
+                            "and is not baked: no file holds the interior",
+                            interior->name,
+                            interior->sector.i,
+                            interior->sector.j));
         }
         world->interiors_.push_back(std::move(*interior));
     }
-    for (const map::ManualProbe& probe : world->map().probes) world->manual_probes_.push_back(probe.position);
+    for (const map::ManualProbe& probe : world->map().probes)
+        world->manual_probes_.push_back(probe.position);
     return world;
 }
 
 std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate sector, float distance_m) {
     const map::SectorCoordinate tile = tile_of(sector);
-    // Isolated, because a thread that helps out while it waits for the build could otherwise take up another sector of this
-    // tile and wait for itself.
+    // Isolated, because a thread that helps out while it waits for the build could otherwise take up another
+    // sector of this tile and wait for itself.
     return *scenes_.get({tile, distance_m}, [&] {
         return tbb::this_task_arena::isolate([&] {
             constexpr float side_m = tile_sectors * static_cast<float>(map::sector_size_m);
@@ -68,11 +91,18 @@ std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate secto
 }
 
 bool World::has_ground(map::SectorCoordinate sector) const {
-    return std::ranges::binary_search(sectors_, std::pair(sector.j, sector.i), {}, [](const map::SectorCoordinate& s) { return std::pair(s.j, s.i); });
+    return std::ranges::binary_search(
+        sectors_, std::pair(sector.j, sector.i), {}, [](const map::SectorCoordinate& s) {
+            return std::pair(s.j, s.i);
+        });
 }
 
-std::shared_ptr<const Placed> World::placed(map::SectorCoordinate sector, const Settings& settings, const trace::Scene& scene) {
-    return placements_.get({sector, settings.reach_m, settings.min_distance_m}, [&] { return place_sector({manual_probes_, no_probes_}, scene, sector, settings); });
+std::shared_ptr<const Placed> World::placed(map::SectorCoordinate sector,
+                                            const Settings& settings,
+                                            const trace::Scene& scene) {
+    return placements_.get({sector, settings.reach_m, settings.min_distance_m}, [&] {
+        return place_sector({manual_probes_, no_probes_}, scene, sector, settings);
+    });
 }
 
 std::shared_ptr<const SampleTable> World::samples(std::uint32_t count, std::uint32_t dimensions) {

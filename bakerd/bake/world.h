@@ -24,26 +24,35 @@ using Placed = tl::expected<PlacedSector, std::string>;
 
 class World {
   public:
-    // With a shelf, the geometry of meshes that a map before had is used again. Fails with a sentence when the map is too large or a `no_probes` or `interior` volume is not closed.
-    [[nodiscard]] static tl::expected<std::shared_ptr<World>, std::string> open(std::shared_ptr<const trace::Device> device, std::shared_ptr<const map::Map> map,
-                                                                                  std::shared_ptr<trace::MeshShelf> shelf = nullptr);
+    // With a shelf, the geometry of meshes that a map before had is used again. Fails with a sentence when
+    // the map is too large or a `no_probes` or `interior` volume is not closed.
+    [[nodiscard]] static tl::expected<std::shared_ptr<World>, std::string> open(
+        std::shared_ptr<const trace::Device> device,
+        std::shared_ptr<const map::Map> map,
+        std::shared_ptr<trace::MeshShelf> shelf = nullptr);
 
     [[nodiscard]] const map::Map& map() const { return *geometry_.map(); }
     [[nodiscard]] const StaticLights& lights() const { return lights_; }
-    [[nodiscard]] float most_scattered() const { return most_scattered_; }  // trace::most_scattered, where there are lights
+    [[nodiscard]] float most_scattered() const {
+        return most_scattered_;
+    }  // trace::most_scattered, where there are lights
     [[nodiscard]] const std::vector<InteriorVolume>& interiors() const { return interiors_; }
     // Of interiors that no file will hold; one sentence each.
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
     [[nodiscard]] const std::vector<map::SectorCoordinate>& sectors_with_ground() const { return sectors_; }
     [[nodiscard]] bool has_ground(map::SectorCoordinate sector) const;
 
-    // All objects within a distance of the sector, and some more: the scene is shared by the 8 x 8 sectors of its
-    // tile, so that neighbours do not build it again. What it holds beyond the distance changes no answer within.
-    [[nodiscard]] std::shared_ptr<const trace::Scene> scene_for(map::SectorCoordinate sector, float distance_m);
+    // All objects within a distance of the sector, and some more: the scene is shared by the 8 x 8 sectors of
+    // its tile, so that neighbours do not build it again. What it holds beyond the distance changes no answer
+    // within.
+    [[nodiscard]] std::shared_ptr<const trace::Scene> scene_for(map::SectorCoordinate sector,
+                                                                float distance_m);
 
-    // The probes of a sector, found once for itself and for all its neighbours. REQUIRES: the scene holds all within
-    // scene_distance_m of a sector or of its neighbour.
-    [[nodiscard]] std::shared_ptr<const Placed> placed(map::SectorCoordinate sector, const Settings& settings, const trace::Scene& scene);
+    // The probes of a sector, found once for itself and for all its neighbours. REQUIRES: the scene holds all
+    // within scene_distance_m of a sector or of its neighbour.
+    [[nodiscard]] std::shared_ptr<const Placed> placed(map::SectorCoordinate sector,
+                                                       const Settings& settings,
+                                                       const trace::Scene& scene);
 
     [[nodiscard]] std::shared_ptr<const SampleTable> samples(std::uint32_t count, std::uint32_t dimensions);
 
@@ -62,7 +71,9 @@ class World {
         std::uint32_t count, dimensions;
         bool operator==(const SampleKey&) const = default;
     };
-    World(std::shared_ptr<const trace::Device> device, const std::shared_ptr<const map::Map>& map, std::shared_ptr<trace::MeshShelf> shelf);
+    World(std::shared_ptr<const trace::Device> device,
+          const std::shared_ptr<const map::Map>& map,
+          std::shared_ptr<trace::MeshShelf> shelf);
 
     trace::MapGeometry geometry_;
     const StaticLights lights_;

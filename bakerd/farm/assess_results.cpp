@@ -15,17 +15,25 @@ namespace {
 constexpr std::size_t most_changes = 1000, most_warnings = 20;
 
 // Of a sector; nothing, with a sentence, when it cannot be read.
-std::optional<bake::Footprint> read_footprint(const Digest& digest, const map::SectorCoordinate& sector, BlobStore& store, std::string& problem) {
+std::optional<bake::Footprint> read_footprint(const Digest& digest,
+                                              const map::SectorCoordinate& sector,
+                                              BlobStore& store,
+                                              std::string& problem) {
     const auto bytes = store.get(digest);
     auto footprint = bytes ? bake::decode_footprint(*bytes) : std::nullopt;
-    if (footprint && footprint->sector == sector) return footprint;
-    problem = fmt::format("sector ({}, {}): the record of an earlier result cannot be used: {}", sector.i, sector.j, bytes ? "it is not one" : bytes.error().message);
+    if (footprint && footprint->sector == sector)
+        return footprint;
+    problem = fmt::format("sector ({}, {}): the record of an earlier result cannot be used: {}",
+                          sector.i,
+                          sector.j,
+                          bytes ? "it is not one" : bytes.error().message);
     return std::nullopt;
 }
 
 class Assessing {
   public:
-    Assessing(const AssessRequest& request, bake::World& world, ChangesSince& changes, BlobStore& store) : request_(request), world_(world), changes_(changes), store_(store) {}
+    Assessing(const AssessRequest& request, bake::World& world, ChangesSince& changes, BlobStore& store)
+        : request_(request), world_(world), changes_(changes), store_(store) {}
 
     AssessAnswer run() {
         AssessAnswer answer;
@@ -49,17 +57,22 @@ class Assessing {
         for (std::size_t c = 0; c < sector.candidates.size(); ++c) {
             std::string problem;
             const auto changes = changes_.map(sector.candidates[c].inventory, problem);
-            const auto footprint = changes ? read_footprint(sector.candidates[c].footprint, sector.sector, store_, problem) : std::nullopt;
+            const auto footprint =
+                changes ? read_footprint(sector.candidates[c].footprint, sector.sector, store_, problem)
+                        : std::nullopt;
             if (!footprint) {
                 warn(problem);
                 continue;
             }
             const float tolerance = request_.settings.tolerance;
-            const bake::Assessment assessment = bake::assess(*footprint, request_.settings, *changes, tolerance, world_);
-            if (assessment.verdict == bake::Verdict::hit) return {assessment.verdict, c, 0, 0, ""};
+            const bake::Assessment assessment =
+                bake::assess(*footprint, request_.settings, *changes, tolerance, world_);
+            if (assessment.verdict == bake::Verdict::hit)
+                return {assessment.verdict, c, 0, 0, ""};
             const bool near = assessment.verdict == bake::Verdict::near_hit;
             const float share = near ? 0 : bake::share_to_bake(assessment, tolerance);
-            if (first || share < best.share || (near && assessment.bound < best.bound)) best = {assessment.verdict, c, assessment.bound, share, bake::describe(assessment, *changes)};
+            if (first || share < best.share || (near && assessment.bound < best.bound))
+                best = {assessment.verdict, c, assessment.bound, share, bake::describe(assessment, *changes)};
             first = false;
         }
         return best;
@@ -69,30 +82,43 @@ class Assessing {
     void tell_changes(AssessAnswer& answer) {
         std::set<Digest> inventories;
         for (std::size_t n = 0; n < answer.sectors.size(); ++n) {
-            if (answer.sectors[n].verdict != bake::Verdict::hit && !request_.sectors[n].candidates.empty()) inventories.insert(request_.sectors[n].candidates[answer.sectors[n].candidate].inventory);
+            if (answer.sectors[n].verdict != bake::Verdict::hit && !request_.sectors[n].candidates.empty())
+                inventories.insert(request_.sectors[n].candidates[answer.sectors[n].candidate].inventory);
         }
         std::set<std::pair<std::string, std::array<float, 6>>> told;
         for (const Digest& inventory : inventories) {
             std::string problem;
             const auto changes = changes_.map(inventory, problem);
-            if (!changes) continue;
+            if (!changes)
+                continue;
             for (const bake::Change& change : *changes) {
                 map::Bounds bounds;
                 for (const auto* item : {&change.before, &change.after}) {
-                    if (!*item || (*item)->bounds.empty()) continue;
+                    if (!*item || (*item)->bounds.empty())
+                        continue;
                     bounds.extend((*item)->bounds.low);
                     bounds.extend((*item)->bounds.high);
                 }
-                if (bounds.empty() || answer.changes.size() >= most_changes) continue;
+                if (bounds.empty() || answer.changes.size() >= most_changes)
+                    continue;
                 const std::string what = bake::describe(change);
-                if (told.insert({what, {bounds.low.x, bounds.low.y, bounds.low.z, bounds.high.x, bounds.high.y, bounds.high.z}}).second) answer.changes.push_back({what, bounds});
+                if (told.insert({what,
+                                 {bounds.low.x,
+                                  bounds.low.y,
+                                  bounds.low.z,
+                                  bounds.high.x,
+                                  bounds.high.y,
+                                  bounds.high.z}})
+                        .second)
+                    answer.changes.push_back({what, bounds});
             }
         }
     }
 
     void warn(const std::string& sentence) {
         const std::lock_guard lock(mutex_);
-        if (warnings_.size() < most_warnings) warnings_.insert(sentence);
+        if (warnings_.size() < most_warnings)
+            warnings_.insert(sentence);
     }
 
     const AssessRequest& request_;
@@ -105,28 +131,44 @@ class Assessing {
 
 }  // namespace
 
-std::shared_ptr<const std::vector<bake::Change>> ChangesSince::map(const Digest& inventory, std::string& problem) {
+std::shared_ptr<const std::vector<bake::Change>> ChangesSince::map(const Digest& inventory,
+                                                                   std::string& problem) {
     const std::lock_guard lock(mutex_);
-    if (const auto found = known_.find(inventory); found != known_.end()) return found->second;
+    if (const auto found = known_.find(inventory); found != known_.end())
+        return found->second;
     const auto bytes = store_.get(inventory);
     const auto before = bytes ? bake::decode_inventory(*bytes) : std::nullopt;
-    if (before) return known_[inventory] = std::make_shared<const std::vector<bake::Change>>(bake::changes_between(*before, *inventory_));
-    problem = fmt::format("the record of an earlier map cannot be used: {}", bytes ? "it is not one" : bytes.error().message);
+    if (before)
+        return known_[inventory] = std::make_shared<const std::vector<bake::Change>>(
+                   bake::changes_between(*before, *inventory_));
+    problem = fmt::format("the record of an earlier map cannot be used: {}",
+                          bytes ? "it is not one" : bytes.error().message);
     return nullptr;
 }
 
-AssessAnswer assess_results(const AssessRequest& request, bake::World& world, ChangesSince& changes, BlobStore& store) { return Assessing(request, world, changes, store).run(); }
+AssessAnswer assess_results(const AssessRequest& request,
+                            bake::World& world,
+                            ChangesSince& changes,
+                            BlobStore& store) {
+    return Assessing(request, world, changes, store).run();
+}
 
-std::optional<bake::EarlierBake> read_earlier(const BakeRequest& request, bake::World& world, ChangesSince& changes, BlobStore& store) {
-    if (!request.earlier) return std::nullopt;
+std::optional<bake::EarlierBake> read_earlier(const BakeRequest& request,
+                                              bake::World& world,
+                                              ChangesSince& changes,
+                                              BlobStore& store) {
+    if (!request.earlier)
+        return std::nullopt;
     std::string problem;
     const auto since = changes.map(request.earlier->inventory, problem);
     const auto file = store.get(request.earlier->file);
     auto footprint = read_footprint(request.earlier->footprint, request.sector, store, problem);
     auto sector = file ? bake::decode_sector(*file) : std::nullopt;
-    if (!since || !footprint || !sector) return std::nullopt;
+    if (!since || !footprint || !sector)
+        return std::nullopt;
     bake::EarlierBake earlier{std::move(*sector), std::move(*footprint), {}};
-    earlier.assessment = bake::assess(earlier.footprint, request.settings, *since, request.settings.tolerance, world);
+    earlier.assessment =
+        bake::assess(earlier.footprint, request.settings, *since, request.settings.tolerance, world);
     return earlier;
 }
 

@@ -18,10 +18,12 @@ namespace drtv::farm {
 // What differs between a map and those before it, each compared once. Thread-safe.
 class ChangesSince {
   public:
-    ChangesSince(std::shared_ptr<const bake::Inventory> inventory, BlobStore& store) : inventory_(std::move(inventory)), store_(store) {}
+    ChangesSince(std::shared_ptr<const bake::Inventory> inventory, BlobStore& store)
+        : inventory_(std::move(inventory)), store_(store) {}
 
     // Since the map with that inventory; nothing when it cannot be read, with a sentence in `problem`.
-    [[nodiscard]] std::shared_ptr<const std::vector<bake::Change>> map(const Digest& inventory, std::string& problem);
+    [[nodiscard]] std::shared_ptr<const std::vector<bake::Change>> map(const Digest& inventory,
+                                                                       std::string& problem);
 
   private:
     const std::shared_ptr<const bake::Inventory> inventory_;
@@ -30,11 +32,19 @@ class ChangesSince {
     std::map<Digest, std::shared_ptr<const std::vector<bake::Change>>> known_;  // guarded by mutex_
 };
 
-// `world` and `changes` are of the request's map. Of each sector the first candidate that hits is taken, else the near hit with the least bound, else that with
-// the fewest probes to bake again. Records that are lost or damaged count for nothing, and are told of. Runs on the calling thread's TBB arena.
-[[nodiscard]] AssessAnswer assess_results(const AssessRequest& request, bake::World& world, ChangesSince& changes, BlobStore& store);
+// `world` and `changes` are of the request's map. Of each sector the first candidate that hits is taken, else
+// the near hit with the least bound, else that with the fewest probes to bake again. Records that are lost or
+// damaged count for nothing, and are told of. Runs on the calling thread's TBB arena.
+[[nodiscard]] AssessAnswer assess_results(const AssessRequest& request,
+                                          bake::World& world,
+                                          ChangesSince& changes,
+                                          BlobStore& store);
 
-// The earlier result that a request names, held against `world`; nothing when it or its records are lost or damaged. REQUIRES: a FloatMode on this thread.
-[[nodiscard]] std::optional<bake::EarlierBake> read_earlier(const BakeRequest& request, bake::World& world, ChangesSince& changes, BlobStore& store);
+// The earlier result that a request names, held against `world`; nothing when it or its records are lost or
+// damaged. REQUIRES: a FloatMode on this thread.
+[[nodiscard]] std::optional<bake::EarlierBake> read_earlier(const BakeRequest& request,
+                                                            bake::World& world,
+                                                            ChangesSince& changes,
+                                                            BlobStore& store);
 
 }  // namespace drtv::farm

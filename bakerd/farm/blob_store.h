@@ -1,5 +1,6 @@
-// Blobs by SHA-256 in a folder: inputs and results. A blob appears whole or not at all (temporary file, fsync,
-// rename, fsync of the folder); losing one costs work, never correctness. Thread-safe, and safe between processes.
+// Blobs by SHA-256 in a folder: inputs and results. A blob appears whole or not at all (temporary file,
+// fsync, rename, fsync of the folder); losing one costs work, never correctness. Thread-safe, and safe
+// between processes.
 #pragma once
 
 #include "bakerd/farm/error.h"
@@ -23,13 +24,14 @@ class BlobStore {
     [[nodiscard]] static Result<std::unique_ptr<BlobStore>> open(const std::string& folder);
 
     // Temporary files of processes that died at work.
-    // REQUIRES: nobody is writing to the folder (the daemon calls it under the data folder's lock, before any worker).
+    // REQUIRES: nobody is writing to the folder (the daemon calls it under the data folder's lock, before any
+    // worker).
     void remove_leftovers() const;
 
     [[nodiscard]] Result<Digest> put(std::span<const std::uint8_t> bytes);
 
-    // Checks the digest of what it reads: a damaged blob is removed and reported as data_loss, never returned.
-    // not_found: there is none; internal: it is there and cannot be read.
+    // Checks the digest of what it reads: a damaged blob is removed and reported as data_loss, never
+    // returned. not_found: there is none; internal: it is there and cannot be read.
     [[nodiscard]] Result<std::vector<std::uint8_t>> get(const Digest& digest);
 
     [[nodiscard]] bool has(const Digest& digest) const;
@@ -40,20 +42,21 @@ class BlobStore {
     // Bytes of an unfinished upload, 0 if there is none.
     [[nodiscard]] std::int64_t received_bytes(const Digest& digest) const;
 
-    // One client's upload of one blob: a lock on it while it lives. What was appended survives, so that a later
-    // upload can go on.
+    // One client's upload of one blob: a lock on it while it lives. What was appended survives, so that a
+    // later upload can go on.
     class Upload {
       public:
         Upload(Upload&& other) noexcept;
         ~Upload();
         [[nodiscard]] Result<void> append(std::span<const std::uint8_t> bytes);
-        // The blob stands in the store; or invalid_argument says what was wrong: bytes of another digest are thrown
-        // away, an upload that ended early is kept to go on.
+        // The blob stands in the store; or invalid_argument says what was wrong: bytes of another digest are
+        // thrown away, an upload that ended early is kept to go on.
         [[nodiscard]] Result<void> finish();
 
       private:
         friend class BlobStore;
-        Upload(BlobStore& store, const Digest& digest, std::int64_t size, int fd, std::int64_t received) : store_(&store), digest_(digest), size_(size), received_(received), fd_(fd) {}
+        Upload(BlobStore& store, const Digest& digest, std::int64_t size, int fd, std::int64_t received)
+            : store_(&store), digest_(digest), size_(size), received_(received), fd_(fd) {}
         BlobStore* store_;
         Digest digest_;
         std::int64_t size_, received_;

@@ -11,7 +11,8 @@ namespace drtv::farm {
 // Holds the folder's lock while it lives.
 class DataFolder {
   public:
-    // Makes the folder when it is missing. Fails with a sentence when it cannot be written or another daemon has it.
+    // Makes the folder when it is missing. Fails with a sentence when it cannot be written or another daemon
+    // has it.
     [[nodiscard]] static Result<std::unique_ptr<DataFolder>> lock(const std::string& path);
     ~DataFolder();
     DataFolder(const DataFolder&) = delete;

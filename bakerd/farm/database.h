@@ -1,5 +1,5 @@
-// The farm's state in one SQLite file (WAL, synchronous FULL). Not thread-safe: the farm calls it under its lock.
-// Losing the file loses jobs, never correctness: it can be rebuilt by submitting again.
+// The farm's state in one SQLite file (WAL, synchronous FULL). Not thread-safe: the farm calls it under its
+// lock. Losing the file loses jobs, never correctness: it can be rebuilt by submitting again.
 #pragma once
 
 #include "bakerd/bake/settings.h"
@@ -24,8 +24,8 @@ using map::Digest;
 enum class TaskState : std::uint8_t { pending = 0, done = 1, failed = 2 };
 enum class JobState : std::uint8_t { running = 0, succeeded = 1, failed = 2, cancelled = 3 };
 
-// One sector under one content and settings: what jobs share. Named by its key, so that two jobs that want the
-// same sector bake it once.
+// One sector under one content and settings: what jobs share. Named by its key, so that two jobs that want
+// the same sector bake it once.
 struct TaskRow {
     std::int64_t id = 0;
     Digest key;
@@ -49,8 +49,8 @@ struct ResultRow {
 
 // What the cache has done since the database was made.
 struct CacheCounts {
-    std::int64_t results = 0, bytes = 0;               // kept now: files and footprints
-    std::int64_t hits = 0, near_hits = 0, baked = 0;   // sectors of all jobs
+    std::int64_t results = 0, bytes = 0;              // kept now: files and footprints
+    std::int64_t hits = 0, near_hits = 0, baked = 0;  // sectors of all jobs
 };
 
 struct JobRow {
@@ -63,7 +63,7 @@ struct JobRow {
     JobState state = JobState::running;
     std::string error;
     std::int64_t sectors_cached = 0, sectors_near = 0;  // hits and near hits
-    float largest_bound = 0;                             // of the near hits, and of probes that others took over
+    float largest_bound = 0;  // of the near hits, and of probes that others took over
     std::int64_t created_seconds = 0, ended_seconds = 0;  // Unix time
 };
 
@@ -92,7 +92,9 @@ class Database {
     [[nodiscard]] Result<std::vector<JobRow>> jobs();
     [[nodiscard]] Result<void> add_job_task(std::int64_t job, std::int64_t task);
     // Rows `first` to `first + count` of a job's tasks in the order of (j, i).
-    [[nodiscard]] Result<std::vector<TaskRow>> job_tasks(std::int64_t job, std::int64_t first = 0, std::int64_t count = INT64_MAX);
+    [[nodiscard]] Result<std::vector<TaskRow>> job_tasks(std::int64_t job,
+                                                         std::int64_t first = 0,
+                                                         std::int64_t count = INT64_MAX);
     [[nodiscard]] Result<std::optional<TaskRow>> job_task(std::int64_t job, map::SectorCoordinate sector);
     [[nodiscard]] Result<JobCounts> job_counts(std::int64_t job);
     // The first `most` warnings of a job's sectors, in the order of (j, i).
@@ -105,7 +107,9 @@ class Database {
     // Sets `row.id`. It counts as the one used last.
     [[nodiscard]] Result<void> insert_result(ResultRow& row);
     // Of one sector, the one used last first.
-    [[nodiscard]] Result<std::vector<ResultRow>> results(map::SectorCoordinate sector, const Digest& results_key, std::size_t most);
+    [[nodiscard]] Result<std::vector<ResultRow>> results(map::SectorCoordinate sector,
+                                                         const Digest& results_key,
+                                                         std::size_t most);
     // Of the result with that file.
     [[nodiscard]] Result<void> mark_used(map::SectorCoordinate sector, const Digest& file);
     // Those used longest ago, without any that a running job holds.

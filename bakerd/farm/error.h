@@ -9,7 +9,16 @@
 
 namespace drtv::farm {
 
-enum class ErrorCode : std::uint8_t { invalid_argument, not_found, failed_precondition, aborted, resource_exhausted, data_loss, unavailable, internal };
+enum class ErrorCode : std::uint8_t {
+    invalid_argument,
+    not_found,
+    failed_precondition,
+    aborted,
+    resource_exhausted,
+    data_loss,
+    unavailable,
+    internal
+};
 
 struct Error {
     ErrorCode code = ErrorCode::internal;
@@ -19,6 +28,8 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-[[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::string message) { return tl::unexpected(Error{code, std::move(message)}); }
+[[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::string message) {
+    return tl::unexpected(Error{code, std::move(message)});
+}
 
 }  // namespace drtv::farm

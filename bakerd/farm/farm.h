@@ -37,7 +37,8 @@ struct JobView {
     std::int64_t rays = 0;  // of sectors baked since the server started
     double rays_per_second = 0, seconds_left = 0;
     std::uint64_t version = 0;  // grows with each change
-    std::vector<std::string> warnings;  // of records it could not use; once it has ended, of its sectors, the first few
+    std::vector<std::string>
+        warnings;  // of records it could not use; once it has ended, of its sectors, the first few
 };
 
 // What a job would do.
@@ -83,10 +84,14 @@ class Farm {
     [[nodiscard]] Result<std::vector<JobView>> list_jobs(std::int64_t before, std::size_t count);
     [[nodiscard]] Result<JobView> cancel_job(std::int64_t id);
     // Waits until the job's version is above `seen` or the time is over.
-    [[nodiscard]] Result<JobView> wait_for_change(std::int64_t id, std::uint64_t seen, std::chrono::milliseconds patience);
+    [[nodiscard]] Result<JobView> wait_for_change(std::int64_t id,
+                                                  std::uint64_t seen,
+                                                  std::chrono::milliseconds patience);
 
     // In the order of (j, i).
-    [[nodiscard]] Result<std::vector<SectorView>> list_sectors(std::int64_t job, std::int64_t first, std::int64_t count);
+    [[nodiscard]] Result<std::vector<SectorView>> list_sectors(std::int64_t job,
+                                                               std::int64_t first,
+                                                               std::int64_t count);
     [[nodiscard]] Result<SectorView> get_sector(std::int64_t job, map::SectorCoordinate sector);
 
     [[nodiscard]] Result<CacheView> cache();
@@ -100,12 +105,12 @@ class Farm {
     using Clock = std::chrono::steady_clock;
     struct Job {
         JobRow row;
-        JobCounts counts;                    // of running jobs; others ask the database
-        std::vector<std::int64_t> tasks;     // of running jobs
-        std::int64_t rays = 0, baked = 0;    // since the server started
+        JobCounts counts;                  // of running jobs; others ask the database
+        std::vector<std::int64_t> tasks;   // of running jobs
+        std::int64_t rays = 0, baked = 0;  // since the server started
         std::optional<Clock::time_point> started;
         std::uint64_t version = 1;
-        std::vector<std::string> warnings;   // of records that could not be used
+        std::vector<std::string> warnings;  // of records that could not be used
     };
     struct Task {
         TaskRow row;
@@ -114,7 +119,10 @@ class Farm {
         std::optional<BakeAnswer> earlier;  // of which the bake takes over what holds
     };
 
-    Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<BlobStore> blobs, std::unique_ptr<Database> database);
+    Farm(Options options,
+         std::unique_ptr<DataFolder> folder,
+         std::unique_ptr<BlobStore> blobs,
+         std::unique_ptr<Database> database);
     [[nodiscard]] Result<void> load();
     void adopt(Job& job, std::vector<TaskRow> tasks, const std::vector<map::SectorCoordinate>& order);
     void reopen(const Task& task);
@@ -125,8 +133,12 @@ class Farm {
         Plan plan;
     };
     [[nodiscard]] Result<Planned> make_plan(const JobRequest& request);
-    [[nodiscard]] Result<std::vector<TaskRow>> carry_out(JobRow& row, const Digest& content, const Plan& plan);
-    [[nodiscard]] Result<TaskRow> find_or_add_task(const JobRow& job, const Digest& content, const PlannedSector& planned);
+    [[nodiscard]] Result<std::vector<TaskRow>> carry_out(JobRow& row,
+                                                         const Digest& content,
+                                                         const Plan& plan);
+    [[nodiscard]] Result<TaskRow> find_or_add_task(const JobRow& job,
+                                                   const Digest& content,
+                                                   const PlannedSector& planned);
     void keep_result(const TaskRow& task);
     // Removes results, those used longest ago first, until at most so many bytes are left.
     [[nodiscard]] Result<void> shrink_cache(std::int64_t most_bytes);
@@ -145,11 +157,11 @@ class Farm {
 
     std::mutex mutex_;
     std::condition_variable job_changed_;
-    const std::unique_ptr<Database> database_;       // guarded by mutex_
-    std::map<std::int64_t, Job> jobs_;               // guarded by mutex_
-    std::unordered_map<std::int64_t, Task> tasks_;   // guarded by mutex_; of running jobs
-    std::int64_t cache_bytes_ = 0;                   // guarded by mutex_; of files and footprints
-    std::deque<std::int64_t> waiting_;               // guarded by mutex_; tasks in the order of baking
+    const std::unique_ptr<Database> database_;      // guarded by mutex_
+    std::map<std::int64_t, Job> jobs_;              // guarded by mutex_
+    std::unordered_map<std::int64_t, Task> tasks_;  // guarded by mutex_; of running jobs
+    std::int64_t cache_bytes_ = 0;                  // guarded by mutex_; of files and footprints
+    std::deque<std::int64_t> waiting_;              // guarded by mutex_; tasks in the order of baking
 
     std::unique_ptr<LocalExecutor> executor_;  // last: its thread calls the above
 };

@@ -29,7 +29,8 @@ struct JobRequest {
 
 // Of the map's sectors with ground those the region touches, in the order of baking: 8 x 8 tiles after each
 // other, so that neighbours share a scene. invalid_argument when the region is wrong or touches none.
-[[nodiscard]] Result<std::vector<map::SectorCoordinate>> sectors_of(const std::optional<Region>& region, const std::vector<map::SectorCoordinate>& with_ground);
+[[nodiscard]] Result<std::vector<map::SectorCoordinate>> sectors_of(
+    const std::optional<Region>& region, const std::vector<map::SectorCoordinate>& with_ground);
 
 // As the database keeps them.
 [[nodiscard]] std::string encode_region(const std::optional<Region>& region);

@@ -8,9 +8,14 @@
 namespace drtv::farm {
 
 LocalExecutor::LocalExecutor(Options options, Callbacks callbacks)
-    : options_(std::move(options)), callbacks_(std::move(callbacks)), window_(static_cast<std::size_t>(options_.threads) + 2), thread_([this] { run(); }) {}
+    : options_(std::move(options)),
+      callbacks_(std::move(callbacks)),
+      window_(static_cast<std::size_t>(options_.threads) + 2),
+      thread_([this] { run(); }) {}
 
-LocalExecutor::~LocalExecutor() { stop(std::chrono::milliseconds(0)); }
+LocalExecutor::~LocalExecutor() {
+    stop(std::chrono::milliseconds(0));
+}
 
 void LocalExecutor::stop(std::chrono::milliseconds patience) {
     {
@@ -20,14 +25,17 @@ void LocalExecutor::stop(std::chrono::milliseconds patience) {
         stopping_ = true;
     }
     changed_.notify_all();
-    if (!thread_.joinable()) return;
+    if (!thread_.joinable())
+        return;
     thread_.join();
     worker_.reset();
     // Nobody waits for an answer that cannot come.
     const auto refuse = [](Request& request) {
-        if (request.promise) request.promise->set_value(FailureAnswer{"the server is stopping", true});
+        if (request.promise)
+            request.promise->set_value(FailureAnswer{"the server is stopping", true});
     };
-    for (auto& [id, request] : in_flight_) refuse(request);
+    for (auto& [id, request] : in_flight_)
+        refuse(request);
     std::for_each(again_.begin(), again_.end(), refuse);
     const std::lock_guard lock(mutex_);
     std::for_each(questions_.begin(), questions_.end(), refuse);
@@ -51,8 +59,10 @@ std::future<Outcome> LocalExecutor::ask(WorkerRequest what) {
     std::future<Outcome> future = request.promise->get_future();
     {
         const std::lock_guard lock(mutex_);
-        if (draining_ || stopping_) request.promise->set_value(FailureAnswer{"the server is stopping", true});
-        else questions_.push_back(std::move(request));
+        if (draining_ || stopping_)
+            request.promise->set_value(FailureAnswer{"the server is stopping", true});
+        else
+            questions_.push_back(std::move(request));
         woken_ = true;
     }
     changed_.notify_all();
@@ -66,37 +76,51 @@ void LocalExecutor::run() {
         {
             std::unique_lock lock(mutex_);
             idle_ = in_flight_.empty();
-            if (idle_) changed_.notify_all();
+            if (idle_)
+                changed_.notify_all();
             // Not for questions_: while the window is full they wait for an event.
             const auto news = [this] { return stopping_ || woken_ || !events_.empty(); };
-            if (in_flight_.empty()) changed_.wait(lock, news);
-            else stalled = !changed_.wait_until(lock, last_news_ + options_.stall_limit, news);
-            if (stopping_) return;
+            if (in_flight_.empty())
+                changed_.wait(lock, news);
+            else
+                stalled = !changed_.wait_until(lock, last_news_ + options_.stall_limit, news);
+            if (stopping_)
+                return;
             idle_ = false;
             woken_ = false;
             events.swap(events_);
         }
-        if (stalled) handle_death(fmt::format("gave no sign for {} s, and was ended,", std::chrono::duration_cast<std::chrono::seconds>(options_.stall_limit).count()));
-        for (const Event& event : events) handle(event);
+        if (stalled)
+            handle_death(
+                fmt::format("gave no sign for {} s, and was ended,",
+                            std::chrono::duration_cast<std::chrono::seconds>(options_.stall_limit).count()));
+        for (const Event& event : events)
+            handle(event);
         fill_window();
     }
 }
 
 void LocalExecutor::handle(const Event& event) {
-    if (event.worker != worker_number_) return;  // the last words of one that has been replaced
-    if (const auto* answer = std::get_if<WorkerAnswer>(&event.what)) handle_answer(*answer);
-    else handle_death(std::get<std::string>(event.what));
+    if (event.worker != worker_number_)
+        return;  // the last words of one that has been replaced
+    if (const auto* answer = std::get_if<WorkerAnswer>(&event.what))
+        handle_answer(*answer);
+    else
+        handle_death(std::get<std::string>(event.what));
 }
 
 void LocalExecutor::handle_answer(const WorkerAnswer& answer) {
     last_news_ = std::chrono::steady_clock::now();
     const auto found = in_flight_.find(answer.id);
-    if (found == in_flight_.end()) return;
+    if (found == in_flight_.end())
+        return;
     Request request = std::move(found->second);
     in_flight_.erase(found);
     const auto* failure = std::get_if<FailureAnswer>(&answer.what);
-    if (failure != nullptr && failure->may_retry) retry_or_fail(std::move(request), failure->sentence);
-    else finish(request, answer.what);
+    if (failure != nullptr && failure->may_retry)
+        retry_or_fail(std::move(request), failure->sentence);
+    else
+        finish(request, answer.what);
 }
 
 void LocalExecutor::handle_death(const std::string& how) {
@@ -113,22 +137,27 @@ void LocalExecutor::handle_death(const std::string& how) {
 void LocalExecutor::retry_or_fail(Request request, const std::string& sentence) {
     if (++request.failed_attempts < max_attempts) {
         // Should an earlier result be what the worker cannot bear: without it then.
-        if (auto* bake = std::get_if<BakeRequest>(&request.what)) bake->earlier.reset();
+        if (auto* bake = std::get_if<BakeRequest>(&request.what))
+            bake->earlier.reset();
         again_.push_back(std::move(request));
         return;
     }
-    finish(request, FailureAnswer{fmt::format("{} (tried {} times)", sentence, request.failed_attempts), false});
+    finish(request,
+           FailureAnswer{fmt::format("{} (tried {} times)", sentence, request.failed_attempts), false});
 }
 
 void LocalExecutor::finish(Request& request, Outcome outcome) {
-    if (request.promise) request.promise->set_value(std::move(outcome));
-    else callbacks_.finished(request.caller_id, request.failed_attempts, std::move(outcome));
+    if (request.promise)
+        request.promise->set_value(std::move(outcome));
+    else
+        callbacks_.finished(request.caller_id, request.failed_attempts, std::move(outcome));
 }
 
 std::optional<LocalExecutor::Request> LocalExecutor::next_request() {
     {
         const std::lock_guard lock(mutex_);
-        if (draining_ || stopping_) return std::nullopt;
+        if (draining_ || stopping_)
+            return std::nullopt;
         if (!questions_.empty()) {
             Request request = std::move(questions_.front());
             questions_.pop_front();
@@ -137,13 +166,15 @@ std::optional<LocalExecutor::Request> LocalExecutor::next_request() {
     }
     if (!again_.empty()) {
         // A suspect runs when nothing else does, and nothing joins it.
-        if (again_.front().alone && !in_flight_.empty()) return std::nullopt;
+        if (again_.front().alone && !in_flight_.empty())
+            return std::nullopt;
         Request request = std::move(again_.front());
         again_.pop_front();
         return request;
     }
     std::optional<BakeRequest> task = callbacks_.next();
-    if (!task) return std::nullopt;
+    if (!task)
+        return std::nullopt;
     Request request;
     request.caller_id = task->id;
     request.what = *task;
@@ -152,15 +183,18 @@ std::optional<LocalExecutor::Request> LocalExecutor::next_request() {
 
 void LocalExecutor::fill_window() {
     while (in_flight_.size() < window_) {
-        if (in_flight_.size() == 1 && in_flight_.begin()->second.alone) return;
+        if (in_flight_.size() == 1 && in_flight_.begin()->second.alone)
+            return;
         std::optional<Request> request = next_request();
-        if (!request) return;
+        if (!request)
+            return;
         send(std::move(*request));
     }
 }
 
 bool LocalExecutor::ensure_worker() {
-    if (worker_) return true;
+    if (worker_)
+        return true;
     const std::uint64_t number = ++worker_number_;
     const auto post = [this, number](auto what) {
         {
@@ -169,7 +203,9 @@ bool LocalExecutor::ensure_worker() {
         }
         changed_.notify_all();
     };
-    auto worker = WorkerProcess::start(options_.worker_command, {[post](WorkerAnswer answer) { post(std::move(answer)); }, [post](std::string how) { post(std::move(how)); }});
+    auto worker = WorkerProcess::start(options_.worker_command,
+                                       {[post](WorkerAnswer answer) { post(std::move(answer)); },
+                                        [post](std::string how) { post(std::move(how)); }});
     if (!worker) {
         spdlog::error("{}", worker.error().message);
         return false;
@@ -186,7 +222,8 @@ void LocalExecutor::send(Request request) {
         retry_or_fail(std::move(request), "no worker could be started");
         return;
     }
-    if (in_flight_.empty()) last_news_ = std::chrono::steady_clock::now();
+    if (in_flight_.empty())
+        last_news_ = std::chrono::steady_clock::now();
     const std::uint64_t id = next_id_++;
     std::visit([id](auto& r) { r.id = id; }, request.what);
     const auto [entry, added] = in_flight_.emplace(id, std::move(request));

@@ -32,8 +32,8 @@ class LocalExecutor {
     struct Options {
         std::vector<std::string> worker_command;
         int threads = 1;  // sectors in flight: a few more than threads, so that none waits
-        // A worker that answers nothing for so long while it has work hangs, and is ended. The dearest sector that
-        // settings allow takes minutes.
+        // A worker that answers nothing for so long while it has work hangs, and is ended. The dearest sector
+        // that settings allow takes minutes.
         std::chrono::milliseconds stall_limit = std::chrono::minutes(30);
     };
     // Called from the executor's own thread, never under its lock.
@@ -55,20 +55,20 @@ class LocalExecutor {
     // Has the worker answer this before any waiting sector.
     [[nodiscard]] std::future<Outcome> ask(WorkerRequest request);
 
-    // Takes no more work, waits at most `patience` until what is in flight has finished, then ends the worker. What
-    // was not finished is not reported; open and later questions are answered with a refusal.
+    // Takes no more work, waits at most `patience` until what is in flight has finished, then ends the
+    // worker. What was not finished is not reported; open and later questions are answered with a refusal.
     void stop(std::chrono::milliseconds patience);
 
   private:
     struct Request {
         WorkerRequest what;
-        std::uint64_t caller_id = 0;                                // of a sector
-        std::shared_ptr<std::promise<Outcome>> promise;             // of a question
+        std::uint64_t caller_id = 0;                     // of a sector
+        std::shared_ptr<std::promise<Outcome>> promise;  // of a question
         int failed_attempts = 0;
         bool alone = false;  // was in flight when a worker died
     };
     struct Event {
-        std::uint64_t worker = 0;  // which of the workers started so far
+        std::uint64_t worker = 0;                      // which of the workers started so far
         std::variant<WorkerAnswer, std::string> what;  // or how the worker died
     };
 
@@ -89,20 +89,20 @@ class LocalExecutor {
 
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::deque<Event> events_;          // guarded by mutex_
-    std::deque<Request> questions_;   // guarded by mutex_
-    bool woken_ = false;                // guarded by mutex_
-    bool draining_ = false;             // guarded by mutex_
-    bool stopping_ = false;             // guarded by mutex_
-    bool idle_ = false;                 // guarded by mutex_; the thread waits and nothing is in flight, for drain()
+    std::deque<Event> events_;       // guarded by mutex_
+    std::deque<Request> questions_;  // guarded by mutex_
+    bool woken_ = false;             // guarded by mutex_
+    bool draining_ = false;          // guarded by mutex_
+    bool stopping_ = false;          // guarded by mutex_
+    bool idle_ = false;  // guarded by mutex_; the thread waits and nothing is in flight, for drain()
 
     // Used by the executor's thread only.
     std::unique_ptr<WorkerProcess> worker_;
     std::uint64_t worker_number_ = 0;
     std::uint64_t next_id_ = 1;
     std::chrono::steady_clock::time_point last_news_;  // last answer, or the first request after a pause
-    std::map<std::uint64_t, Request> in_flight_;  // by the id sent to the worker
-    std::deque<Request> again_;                   // to be tried again, alone
+    std::map<std::uint64_t, Request> in_flight_;       // by the id sent to the worker
+    std::deque<Request> again_;                        // to be tried again, alone
 
     std::thread thread_;
 };

@@ -42,7 +42,8 @@ using MapResult = tl::expected<LoadedMap, FailureAnswer>;
 
 class Worker {
   public:
-    Worker(std::unique_ptr<BlobStore> store, std::shared_ptr<const trace::Device> device, std::FILE* out) : store_(std::move(store)), device_(std::move(device)), out_(out) {}
+    Worker(std::unique_ptr<BlobStore> store, std::shared_ptr<const trace::Device> device, std::FILE* out)
+        : store_(std::move(store)), device_(std::move(device)), out_(out) {}
 
     void answer(const WorkerRequest& request) {
         WorkerAnswer answer;
@@ -52,7 +53,8 @@ class Worker {
         } catch (const std::bad_alloc&) {
             answer.what = FailureAnswer{"the worker has not enough memory", true};
         } catch (const std::exception& exception) {
-            answer.what = FailureAnswer{fmt::format("the worker met an unexpected error: {}", exception.what()), true};
+            answer.what =
+                FailureAnswer{fmt::format("the worker met an unexpected error: {}", exception.what()), true};
         }
         const std::string text = encode(answer);
         const std::lock_guard lock(out_mutex_);
@@ -65,35 +67,55 @@ class Worker {
 
     What perform(const InspectRequest& request) {
         const MapResult loaded = map_of(request.manifest);
-        if (!loaded) return loaded.error();
+        if (!loaded)
+            return loaded.error();
         return loaded->summary;
     }
 
     What perform(const BakeRequest& request) {
         const MapResult loaded = map_of(request.manifest);
-        if (!loaded) return loaded.error();
+        if (!loaded)
+            return loaded.error();
         const auto start = std::chrono::steady_clock::now();
         const trace::FloatMode float_mode;
-        const std::optional<bake::EarlierBake> earlier = read_earlier(request, *loaded->world, *loaded->changes, *store_);
-        auto baked = bake::bake_sector(*loaded->world, request.sector, request.settings, earlier ? &*earlier : nullptr);
-        if (!baked) return FailureAnswer{baked.error(), false};
+        const std::optional<bake::EarlierBake> earlier =
+            read_earlier(request, *loaded->world, *loaded->changes, *store_);
+        auto baked = bake::bake_sector(
+            *loaded->world, request.sector, request.settings, earlier ? &*earlier : nullptr);
+        if (!baked)
+            return FailureAnswer{baked.error(), false};
         const auto bytes = bake::encode_sector(baked->sector, baked->warnings);
-        if (!bytes) return FailureAnswer{bytes.error(), false};
+        if (!bytes)
+            return FailureAnswer{bytes.error(), false};
         const std::vector<std::uint8_t> footprint = bake::encode_footprint(baked->footprint);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         // Lost when nothing rested on it any more.
-        if (!store_->has(loaded->summary.inventory) && !store_->put(bake::encode_inventory(*loaded->inventory))) return FailureAnswer{"the map's record cannot be stored", true};
+        if (!store_->has(loaded->summary.inventory) &&
+            !store_->put(bake::encode_inventory(*loaded->inventory)))
+            return FailureAnswer{"the map's record cannot be stored", true};
         // The footprint first: a result without one could never be found again.
-        const auto footprint_digest = store_->put(footprint), digest = footprint_digest ? store_->put(*bytes) : footprint_digest;
-        if (!digest) return FailureAnswer{digest.error().message, true};
+        const auto footprint_digest = store_->put(footprint),
+                   digest = footprint_digest ? store_->put(*bytes) : footprint_digest;
+        if (!digest)
+            return FailureAnswer{digest.error().message, true};
         const Sector& sector = baked->sector;
-        return BakeAnswer{*digest, static_cast<std::int64_t>(bytes->size()), static_cast<std::int64_t>(sector.probes.size()), static_cast<std::int64_t>(sector.statistics.rays), baked->warnings,
-                          *footprint_digest, loaded->summary.inventory, static_cast<std::int64_t>(footprint.size()), seconds, baked->footprint.bound()};
+        return BakeAnswer{*digest,
+                          static_cast<std::int64_t>(bytes->size()),
+                          static_cast<std::int64_t>(sector.probes.size()),
+                          static_cast<std::int64_t>(sector.statistics.rays),
+                          baked->warnings,
+                          *footprint_digest,
+                          loaded->summary.inventory,
+                          static_cast<std::int64_t>(footprint.size()),
+                          seconds,
+                          baked->footprint.bound()};
     }
 
     What perform(const AssessRequest& request) {
         const MapResult loaded = map_of(request.manifest);
-        if (!loaded) return loaded.error();
+        if (!loaded)
+            return loaded.error();
         return assess_results(request, *loaded->world, *loaded->changes, *store_);
     }
 
@@ -104,17 +126,20 @@ class Worker {
         bool ours = false;
         {
             const std::lock_guard lock(maps_mutex_);
-            auto found = std::find_if(maps_.begin(), maps_.end(), [&](const Entry& entry) { return entry.manifest == manifest; });
+            auto found = std::find_if(
+                maps_.begin(), maps_.end(), [&](const Entry& entry) { return entry.manifest == manifest; });
             if (found == maps_.end()) {
                 ours = true;
                 maps_.push_front({manifest, promise.get_future().share()});
-                while (maps_.size() > kept_maps) maps_.pop_back();
+                while (maps_.size() > kept_maps)
+                    maps_.pop_back();
             } else {
                 maps_.splice(maps_.begin(), maps_, found);
             }
             future = maps_.front().result;
         }
-        if (!ours) return future.get();
+        if (!ours)
+            return future.get();
         try {
             promise.set_value(load(manifest));
         } catch (...) {
@@ -122,7 +147,8 @@ class Worker {
             forget(manifest);
         }
         const MapResult& result = future.get();
-        if (!result) forget(manifest);
+        if (!result)
+            forget(manifest);
         return result;
     }
 
@@ -134,21 +160,36 @@ class Worker {
 
     MapResult load(const Digest& digest) {
         const auto bytes = store_->get(digest);
-        if (!bytes) return tl::unexpected(FailureAnswer{bytes.error().message, true});
+        if (!bytes)
+            return tl::unexpected(FailureAnswer{bytes.error().message, true});
         const auto manifest = decode_manifest({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
-        if (!manifest) return tl::unexpected(FailureAnswer{manifest.error().message, false});
+        if (!manifest)
+            return tl::unexpected(FailureAnswer{manifest.error().message, false});
         auto imported = map::import_map(manifest->roots, manifest_source(*manifest, *store_));
-        if (!imported) return tl::unexpected(FailureAnswer{imported.error(), false});
+        if (!imported)
+            return tl::unexpected(FailureAnswer{imported.error(), false});
         auto map = std::make_shared<const map::Map>(std::move(*imported));
         auto world = bake::World::open(device_, map, shelf_);
-        if (!world) return tl::unexpected(FailureAnswer{world.error(), false});
+        if (!world)
+            return tl::unexpected(FailureAnswer{world.error(), false});
         auto inventory = std::make_shared<const bake::Inventory>(bake::take_inventory(**world));
         const auto inventory_digest = store_->put(bake::encode_inventory(*inventory));
-        if (!inventory_digest) return tl::unexpected(FailureAnswer{inventory_digest.error().message, true});
-        LoadedMap loaded{*world, {map->content, *inventory_digest, (*world)->sectors_with_ground(), static_cast<std::int64_t>(map->objects.size()), 0, map->warnings}, inventory, std::make_shared<ChangesSince>(inventory, *store_)};
-        loaded.summary.warnings.insert(loaded.summary.warnings.end(), (*world)->warnings().begin(), (*world)->warnings().end());
+        if (!inventory_digest)
+            return tl::unexpected(FailureAnswer{inventory_digest.error().message, true});
+        LoadedMap loaded{*world,
+                         {map->content,
+                          *inventory_digest,
+                          (*world)->sectors_with_ground(),
+                          static_cast<std::int64_t>(map->objects.size()),
+                          0,
+                          map->warnings},
+                         inventory,
+                         std::make_shared<ChangesSince>(inventory, *store_)};
+        loaded.summary.warnings.insert(
+            loaded.summary.warnings.end(), (*world)->warnings().begin(), (*world)->warnings().end());
         for (const map::Object& object : map->objects) {
-            for (const map::Primitive& primitive : map->meshes[object.mesh].primitives) loaded.summary.triangle_count += static_cast<std::int64_t>(primitive.triangles.size());
+            for (const map::Primitive& primitive : map->meshes[object.mesh].primitives)
+                loaded.summary.triangle_count += static_cast<std::int64_t>(primitive.triangles.size());
         }
         return loaded;
     }
@@ -160,7 +201,8 @@ class Worker {
 
     const std::unique_ptr<BlobStore> store_;
     const std::shared_ptr<const trace::Device> device_;
-    const std::shared_ptr<trace::MeshShelf> shelf_ = std::make_shared<trace::MeshShelf>();  // an edit leaves most meshes as they were
+    const std::shared_ptr<trace::MeshShelf> shelf_ =
+        std::make_shared<trace::MeshShelf>();  // an edit leaves most meshes as they were
     std::mutex out_mutex_;
     std::FILE* const out_;  // guarded by out_mutex_
     std::mutex maps_mutex_;
@@ -170,7 +212,8 @@ class Worker {
 // The protocol's stream; file descriptor 1 becomes standard error for everyone else.
 std::FILE* take_standard_output() {
     const int fd = ::dup(STDOUT_FILENO);
-    if (fd < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return nullptr;
+    if (fd < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
+        return nullptr;
     return ::fdopen(fd, "w");
 }
 
@@ -183,12 +226,17 @@ int run_worker(const WorkerOptions& options) {
     auto store = BlobStore::open(options.blob_folder);
     auto device = trace::Device::open();
     if (out == nullptr || !store || !device) {
-        spdlog::error("{}", !store ? store.error().message : !device ? device.error() : "cannot take over standard output");
+        spdlog::error("{}",
+                      !store    ? store.error().message
+                      : !device ? device.error()
+                                : "cannot take over standard output");
         return 1;
     }
-    const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+    const int threads =
+        options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
     // One more than the arena's: this thread, which only reads.
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads) + 1);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads) + 1);
     tbb::task_arena arena(threads, 0);
     tbb::task_group in_flight;
     Worker worker(std::move(*store), *device, out);

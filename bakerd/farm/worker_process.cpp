@@ -17,15 +17,18 @@ namespace drtv::farm {
 namespace {
 
 std::string describe_exit(int status) {
-    if (WIFSIGNALED(status)) return fmt::format("was ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+    if (WIFSIGNALED(status))
+        return fmt::format("was ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
     return fmt::format("ended with status {}", WEXITSTATUS(status));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::vector<std::string>& command, Events events) {
+Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::vector<std::string>& command,
+                                                            Events events) {
     std::array<int, 2> to_worker{}, from_worker{};
-    if (::pipe2(to_worker.data(), O_CLOEXEC) != 0) return fail(ErrorCode::internal, fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+    if (::pipe2(to_worker.data(), O_CLOEXEC) != 0)
+        return fail(ErrorCode::internal, fmt::format("cannot make a pipe: {}", std::strerror(errno)));
     if (::pipe2(from_worker.data(), O_CLOEXEC) != 0) {
         ::close(to_worker[0]);
         ::close(to_worker[1]);
@@ -45,7 +48,8 @@ Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::vector<st
     posix_spawnattr_setsigmask(&attributes, &none);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
     std::vector<char*> arguments;
-    for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+    for (const std::string& argument : command)
+        arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);
     pid_t pid = 0;
     const int error = ::posix_spawn(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
@@ -56,19 +60,25 @@ Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::vector<st
     if (error != 0) {
         ::close(to_worker[1]);
         ::close(from_worker[0]);
-        return fail(ErrorCode::internal, fmt::format("cannot start the worker {}: {}", command[0], std::strerror(error)));
+        return fail(ErrorCode::internal,
+                    fmt::format("cannot start the worker {}: {}", command[0], std::strerror(error)));
     }
-    return std::unique_ptr<WorkerProcess>(new WorkerProcess(pid, to_worker[1], from_worker[0], std::move(events)));
+    return std::unique_ptr<WorkerProcess>(
+        new WorkerProcess(pid, to_worker[1], from_worker[0], std::move(events)));
 }
 
-WorkerProcess::WorkerProcess(pid_t pid, int input, int output, Events events) : pid_(pid), input_(input), output_(output), events_(std::move(events)), reader_([this] { read_answers(); }) {}
+WorkerProcess::WorkerProcess(pid_t pid, int input, int output, Events events)
+    : pid_(pid), input_(input), output_(output), events_(std::move(events)), reader_([this] {
+          read_answers();
+      }) {}
 
 WorkerProcess::~WorkerProcess() {
     ::kill(pid_, SIGKILL);
     reader_.join();
     ::close(input_);
     ::close(output_);
-    // Reaped here and not by the reader, so that the number cannot go to another process before the kill above.
+    // Reaped here and not by the reader, so that the number cannot go to another process before the kill
+    // above.
     ::waitpid(pid_, nullptr, 0);
 }
 
@@ -76,8 +86,10 @@ bool WorkerProcess::send(const WorkerRequest& request) {
     const std::string text = encode(request) + "\n";
     for (std::size_t at = 0; at < text.size();) {
         const ssize_t n = ::write(input_, text.data() + at, text.size() - at);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return false;
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
         at += static_cast<std::size_t>(n);
     }
     return true;
@@ -88,19 +100,24 @@ void WorkerProcess::read_answers() {
     std::array<char, 65536> buffer;
     for (;;) {
         const ssize_t n = ::read(output_, buffer.data(), buffer.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) break;
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            break;
         held.append(buffer.data(), static_cast<std::size_t>(n));
         for (std::size_t end; (end = held.find('\n')) != std::string::npos; held.erase(0, end + 1)) {
             // A line that is no answer is a broken worker: it will be ended, and its death reported.
-            if (auto answer = decode_answer(std::string_view(held).substr(0, end))) events_.answered(std::move(*answer));
-            else ::kill(pid_, SIGKILL);
+            if (auto answer = decode_answer(std::string_view(held).substr(0, end)))
+                events_.answered(std::move(*answer));
+            else
+                ::kill(pid_, SIGKILL);
         }
     }
     // One that closed its output and lives on will never answer.
     ::kill(pid_, SIGKILL);
     siginfo_t info{};
-    while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0 && errno == EINTR) {}
+    while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
+    }
     const int status = info.si_code == CLD_EXITED ? info.si_status << 8 : info.si_status;
     events_.died(describe_exit(status));
 }

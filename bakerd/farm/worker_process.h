@@ -22,8 +22,10 @@ class WorkerProcess {
     };
 
     // REQUIRES: the process ignores SIGPIPE, because a worker may die while it is written to.
-    // Starts `command` (program and arguments). The events come from a thread of its own; `died` comes last, once.
-    [[nodiscard]] static Result<std::unique_ptr<WorkerProcess>> start(const std::vector<std::string>& command, Events events);
+    // Starts `command` (program and arguments). The events come from a thread of its own; `died` comes last,
+    // once.
+    [[nodiscard]] static Result<std::unique_ptr<WorkerProcess>> start(const std::vector<std::string>& command,
+                                                                      Events events);
 
     // Ends the worker at once and waits for it.
     ~WorkerProcess();

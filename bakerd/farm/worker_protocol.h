@@ -33,7 +33,8 @@ struct BakeRequest {
     map::Digest manifest;
     map::SectorCoordinate sector;
     bake::Settings settings;
-    std::optional<ResultDigests> earlier;  // of another map, with these settings; what holds of it is taken over
+    std::optional<ResultDigests>
+        earlier;  // of another map, with these settings; what holds of it is taken over
 };
 
 // Asks which older results of sectors hold for a map.
@@ -52,7 +53,7 @@ using WorkerRequest = std::variant<InspectRequest, BakeRequest, AssessRequest>;
 
 struct InspectAnswer {
     map::Digest content;
-    map::Digest inventory;  // a blob (bake/inventory.h)
+    map::Digest inventory;                       // a blob (bake/inventory.h)
     std::vector<map::SectorCoordinate> sectors;  // with ground, by (j, i)
     std::int64_t object_count = 0, triangle_count = 0;
     std::vector<std::string> warnings;
@@ -62,21 +63,26 @@ struct BakeAnswer {
     map::Digest result;
     std::int64_t size_bytes = 0, probes = 0, rays = 0;
     std::vector<std::string> warnings;  // one sentence each
-    map::Digest footprint = {}, inventory = {};  // blobs: what the result depends on, and the map of which it was baked
+    map::Digest footprint = {},
+                inventory = {};  // blobs: what the result depends on, and the map of which it was baked
     std::int64_t footprint_bytes = 0;
     double seconds = 0;  // that a bake from nothing takes, beside other sectors
-    float bound = 0;     // on how far it is off, where probes of another map's result were taken over (assessment.h)
+    float bound =
+        0;  // on how far it is off, where probes of another map's result were taken over (assessment.h)
 };
 
-[[nodiscard]] inline ResultDigests digests_of(const BakeAnswer& result) { return {result.result, result.footprint, result.inventory}; }
+[[nodiscard]] inline ResultDigests digests_of(const BakeAnswer& result) {
+    return {result.result, result.footprint, result.inventory};
+}
 
 struct AssessAnswer {
     struct Sector {
         bake::Verdict verdict = bake::Verdict::rebake;
-        std::size_t candidate = 0;  // of a rebake the one with the most to take over, when its share is below 1
+        std::size_t candidate =
+            0;  // of a rebake the one with the most to take over, when its share is below 1
         float bound = 0;
-        float share = 1;            // of its probes, that a rebake has to bake
-        std::string reason;         // one sentence; empty of a hit
+        float share = 1;     // of its probes, that a rebake has to bake
+        std::string reason;  // one sentence; empty of a hit
     };
     // Something that is not as it was in the map of a result, with where it is and was.
     struct Change {

@@ -12,11 +12,14 @@ namespace {
 enum class Tag : std::uint32_t { texture = 1, material, primitive, mesh, object, volume, light, probe, map };
 
 // -0 and 0 bake alike.
-glm::vec3 plain(const glm::vec3& v) { return v + 0.0f; }
+glm::vec3 plain(const glm::vec3& v) {
+    return v + 0.0f;
+}
 
 void add_view(Hasher& hasher, const TextureView& view, const Map& map) {
     hasher.add(view.present());
-    if (!view.present()) return;
+    if (!view.present())
+        return;
     hasher.add(map.textures[view.texture].digest);
     hasher.add(plain(view.u_from_uv));
     hasher.add(plain(view.v_from_uv));
@@ -26,9 +29,11 @@ void add_view(Hasher& hasher, const TextureView& view, const Map& map) {
 template <class Thing>
 void sort_by(std::vector<Digest>& digests, std::vector<Thing>& things) {
     std::vector<std::pair<Digest, Thing>> pairs;
-    for (std::size_t n = 0; n < things.size(); ++n) pairs.emplace_back(digests[n], std::move(things[n]));
+    for (std::size_t n = 0; n < things.size(); ++n)
+        pairs.emplace_back(digests[n], std::move(things[n]));
     std::ranges::stable_sort(pairs, {}, &std::pair<Digest, Thing>::first);
-    for (std::size_t n = 0; n < things.size(); ++n) std::tie(digests[n], things[n]) = std::move(pairs[n]);
+    for (std::size_t n = 0; n < things.size(); ++n)
+        std::tie(digests[n], things[n]) = std::move(pairs[n]);
 }
 
 }  // namespace
@@ -54,10 +59,13 @@ Digest digest_material(const Material& material, const Map& map) {
     hasher.add(plain(material.emission));
     add_view(hasher, material.emission_texture, map);
     hasher.add(material.transmission);
-    if (material.transmission > 0) hasher.add(plain(material.transmission_colour));
+    if (material.transmission > 0)
+        hasher.add(plain(material.transmission_colour));
     hasher.add(material.alpha_mode);
-    if (material.alpha_mode != AlphaMode::opaque) hasher.add(material.base_colour.w);
-    if (material.alpha_mode == AlphaMode::mask) hasher.add(material.alpha_cutoff);
+    if (material.alpha_mode != AlphaMode::opaque)
+        hasher.add(material.base_colour.w);
+    if (material.alpha_mode == AlphaMode::mask)
+        hasher.add(material.alpha_cutoff);
     hasher.add(material.double_sided);
     return hasher.finish();
 }
@@ -78,7 +86,8 @@ Digest digest_mesh(const Mesh& mesh) {
     Hasher hasher;
     hasher.add(Tag::mesh);
     hasher.add(static_cast<std::uint64_t>(mesh.primitives.size()));
-    for (const Primitive& primitive : mesh.primitives) hasher.add(primitive.digest);
+    for (const Primitive& primitive : mesh.primitives)
+        hasher.add(primitive.digest);
     return hasher.finish();
 }
 
@@ -87,7 +96,8 @@ Digest digest_object(const Object& object, const Map& map) {
     hasher.add(Tag::object);
     hasher.add(map.meshes[object.mesh].digest);
     hasher.add(object.role);
-    for (glm::length_t column = 0; column < 4; ++column) hasher.add(plain(object.world_from_object[column]));
+    for (glm::length_t column = 0; column < 4; ++column)
+        hasher.add(plain(object.world_from_object[column]));
     return hasher.finish();
 }
 
@@ -105,28 +115,35 @@ Digest digest_light(const Light& light) {
     hasher.add(Tag::light);
     hasher.add(light.kind);
     hasher.add(plain(light.colour));
-    for (float value : {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians}) hasher.add(value);
+    for (float value : {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians})
+        hasher.add(value);
     // A sun stands nowhere, and a point light shines all around.
-    if (light.kind != LightKind::directional) hasher.add(plain(light.position));
-    if (light.kind != LightKind::point) hasher.add(plain(light.direction));
+    if (light.kind != LightKind::directional)
+        hasher.add(plain(light.position));
+    if (light.kind != LightKind::point)
+        hasher.add(plain(light.direction));
     return hasher.finish();
 }
 
 void finish_content(Map& map) {
     std::ranges::stable_sort(map.objects, {}, &Object::digest);
     std::stable_sort(map.probes.begin(), map.probes.end(), [](const ManualProbe& a, const ManualProbe& b) {
-        return std::tuple(a.position.x, a.position.y, a.position.z) < std::tuple(b.position.x, b.position.y, b.position.z);
+        return std::tuple(a.position.x, a.position.y, a.position.z) <
+               std::tuple(b.position.x, b.position.y, b.position.z);
     });
     std::vector<Digest> lights, volumes;
-    for (Light& light : map.lights) light.digest = digest_light(light);
+    for (Light& light : map.lights)
+        light.digest = digest_light(light);
     std::ranges::stable_sort(map.lights, {}, &Light::digest);
-    for (const Light& light : map.lights) lights.push_back(light.digest);
+    for (const Light& light : map.lights)
+        lights.push_back(light.digest);
     for (const Volume& volume : map.volumes) {
         Hasher hasher;
         hasher.add(volume.digest);
         // The name says which probe an interior uses; what counts is where that probe stands.
         hasher.add(!volume.probe_name.empty());
-        if (!volume.probe_name.empty()) hasher.add(std::ranges::find(map.probes, volume.probe_name, &ManualProbe::name)->position);
+        if (!volume.probe_name.empty())
+            hasher.add(std::ranges::find(map.probes, volume.probe_name, &ManualProbe::name)->position);
         volumes.push_back(hasher.finish());
     }
     sort_by(volumes, map.volumes);
@@ -134,9 +151,11 @@ void finish_content(Map& map) {
     Hasher hasher;
     hasher.add(Tag::map);
     hasher.add(static_cast<std::uint64_t>(map.objects.size()));
-    for (const Object& object : map.objects) hasher.add(object.digest);
+    for (const Object& object : map.objects)
+        hasher.add(object.digest);
     hasher.add(static_cast<std::uint64_t>(map.probes.size()));
-    for (const ManualProbe& probe : map.probes) hasher.add(probe.position);
+    for (const ManualProbe& probe : map.probes)
+        hasher.add(probe.position);
     hasher.add_sized(volumes);
     hasher.add_sized(lights);
     map.content = hasher.finish();

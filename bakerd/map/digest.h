@@ -36,9 +36,10 @@ class Hasher {
 
     void add_bytes(const void* data, std::size_t size);
 
-    // The object representation: for integers, floats and padding-free structs of them. -0.0f and 0.0f differ.
+    // The object representation: for integers, floats and padding-free structs of them. -0.0f and 0.0f
+    // differ.
     template <class Value>
-        requires std::is_trivially_copyable_v<Value>
+    requires std::is_trivially_copyable_v<Value>
     void add(const Value& value) { add_bytes(&value, sizeof value); }
 
     template <class Range>

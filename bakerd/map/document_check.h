@@ -13,14 +13,16 @@ namespace drtv::map {
 
 // Bytes that lie outside the JSON.
 struct OutsideBytes {
-    std::string element;                 // "buffer 0", for messages
-    std::optional<std::string> path;     // decoded, relative to the document's folder; without one, the GLB's binary chunk
+    std::string element;  // "buffer 0", for messages
+    std::optional<std::string>
+        path;  // decoded, relative to the document's folder; without one, the GLB's binary chunk
     std::optional<std::size_t> size_bytes;  // a buffer's byteLength; an image has its whole file
 };
 
 struct CheckedDocument {
-    // The document for tinygltf. Numbers stand as it wants them (an index written as 3.0 is 3), what no bake needs
-    // is left out (animations, skins, cameras), and the uri of a buffer or image outside is its place in `outside`.
+    // The document for tinygltf. Numbers stand as it wants them (an index written as 3.0 is 3), what no bake
+    // needs is left out (animations, skins, cameras), and the uri of a buffer or image outside is its place
+    // in `outside`.
     std::string json;
     std::vector<OutsideBytes> outside;
 };

@@ -19,7 +19,9 @@ struct GltfDocument {
     [[nodiscard]] std::string at(const std::string& rest) const { return path + ": " + rest; }
 };
 
-// Loads `path` and its buffers. Images are kept as encoded bytes in `Image::image`; decoding is the material's.
-[[nodiscard]] tl::expected<GltfDocument, std::string> load_document(const std::string& path, const FileSource& files);
+// Loads `path` and its buffers. Images are kept as encoded bytes in `Image::image`; decoding is the
+// material's.
+[[nodiscard]] tl::expected<GltfDocument, std::string> load_document(const std::string& path,
+                                                                    const FileSource& files);
 
 }  // namespace drtv::map

@@ -19,8 +19,8 @@ struct SectorCoordinate {
 
 inline constexpr double sector_size_m = 64;
 
-// Sorted by (j, i). Fails with a sentence when an object lies beyond the range of sector coordinates (+-16384)
-// or the map covers more than 2^20 sectors.
+// Sorted by (j, i). Fails with a sentence when an object lies beyond the range of sector coordinates
+// (+-16384) or the map covers more than 2^20 sectors.
 [[nodiscard]] tl::expected<std::vector<SectorCoordinate>, std::string> sectors_with_ground(const Map& map);
 
 }  // namespace drtv::map

@@ -20,12 +20,19 @@ struct FileEnd {
 Imported check_interiors(const Map& map, const std::vector<FileEnd>& ends) {
     auto end = ends.begin();
     for (std::size_t n = 0; n < map.volumes.size(); ++n) {
-        while (n >= end->volumes) ++end;
+        while (n >= end->volumes)
+            ++end;
         const Volume& volume = map.volumes[n];
-        if (volume.probe_name.empty()) continue;
+        if (volume.probe_name.empty())
+            continue;
         const auto named = std::ranges::count(map.probes, volume.probe_name, &ManualProbe::name);
         if (named != 1) {
-            return tl::unexpected(fmt::format("{}: interior '{}': bake_probe names '{}', and the map has {} probe nodes of that name", end->path, volume.name, volume.probe_name, named));
+            return tl::unexpected(fmt::format(
+                "{}: interior '{}': bake_probe names '{}', and the map has {} probe nodes of that name",
+                end->path,
+                volume.name,
+                volume.probe_name,
+                named));
         }
     }
     return {};
@@ -37,14 +44,19 @@ tl::expected<Map, std::string> import_files(std::span<const std::string> paths, 
     std::vector<FileEnd> ends;
     for (const std::string& path : paths) {
         const auto document = load_document(path, files);
-        if (!document) return tl::unexpected(document.error());
-        if (auto checked = check_mesh_sizes(*document); !checked) return tl::unexpected(checked.error());
+        if (!document)
+            return tl::unexpected(document.error());
+        if (auto checked = check_mesh_sizes(*document); !checked)
+            return tl::unexpected(checked.error());
         const auto materials = import_materials(*document, map, shared);
-        if (!materials) return tl::unexpected(materials.error());
-        if (auto imported = import_nodes(*document, *materials, map, shared); !imported) return tl::unexpected(imported.error());
+        if (!materials)
+            return tl::unexpected(materials.error());
+        if (auto imported = import_nodes(*document, *materials, map, shared); !imported)
+            return tl::unexpected(imported.error());
         ends.push_back({path, map.volumes.size()});
     }
-    if (auto checked = check_interiors(map, ends); !checked) return tl::unexpected(checked.error());
+    if (auto checked = check_interiors(map, ends); !checked)
+        return tl::unexpected(checked.error());
     finish_content(map);
     return map;
 }
@@ -53,13 +65,17 @@ tl::expected<Map, std::string> import_files(std::span<const std::string> paths, 
 
 std::string as_sentence(std::string text) {
     constexpr std::size_t max_length = 500;
-    if (text.size() > max_length) text = text.substr(0, max_length) + "...";
+    if (text.size() > max_length)
+        text = text.substr(0, max_length) + "...";
     for (char& c : text) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
+            c = ' ';
     }
     return text;
 }
 
-tl::expected<Map, std::string> import_map(std::span<const std::string> paths, const FileSource& files) { return import_files(paths, files).map_error(as_sentence); }
+tl::expected<Map, std::string> import_map(std::span<const std::string> paths, const FileSource& files) {
+    return import_files(paths, files).map_error(as_sentence);
+}
 
 }  // namespace drtv::map

@@ -15,8 +15,8 @@ namespace drtv::map {
 
 using Imported = tl::expected<void, std::string>;
 
-// Index into Map::materials of each glTF material of one document that some primitive wears (UINT32_MAX of the
-// others); the last one is glTF's default material.
+// Index into Map::materials of each glTF material of one document that some primitive wears (UINT32_MAX of
+// the others); the last one is glTF's default material.
 using MaterialIndices = std::vector<std::uint32_t>;
 
 // Equal things of several documents (or of one) are kept once: digest -> index.
@@ -24,7 +24,8 @@ struct Shared {
     struct HashDigest {
         std::size_t operator()(const Digest& digest) const {
             std::size_t value = 0;
-            for (std::size_t k = 0; k < sizeof value; ++k) value = value << 8 | digest.bytes[k];
+            for (std::size_t k = 0; k < sizeof value; ++k)
+                value = value << 8 | digest.bytes[k];
             return value;
         }
     };
@@ -42,20 +43,29 @@ void warn(Map& map, const std::string& text);
 // "material 3 ('wall')".
 [[nodiscard]] std::string name_of_material(const GltfDocument& document, std::size_t material);
 
-[[nodiscard]] tl::expected<MaterialIndices, std::string> import_materials(const GltfDocument& document, Map& map, Shared& shared);
+[[nodiscard]] tl::expected<MaterialIndices, std::string> import_materials(const GltfDocument& document,
+                                                                          Map& map,
+                                                                          Shared& shared);
 
 // Whether all primitives together can be read in sensible time and memory.
 [[nodiscard]] Imported check_mesh_sizes(const GltfDocument& document);
 
 // One glTF mesh; an index into Map::meshes, or no_mesh when it has no triangles.
 inline constexpr std::uint32_t no_mesh = UINT32_MAX;
-[[nodiscard]] tl::expected<std::uint32_t, std::string> import_mesh(const GltfDocument& document, std::size_t mesh, const MaterialIndices& materials, Map& map, Shared& shared);
+[[nodiscard]] tl::expected<std::uint32_t, std::string> import_mesh(const GltfDocument& document,
+                                                                   std::size_t mesh,
+                                                                   const MaterialIndices& materials,
+                                                                   Map& map,
+                                                                   Shared& shared);
 
 // One punctual light but for its place and name. The sentence names the light.
 [[nodiscard]] tl::expected<Light, std::string> import_light(const tinygltf::Model& model, int number);
 
 // The default scene's nodes: objects, probes, volumes, lights.
-[[nodiscard]] Imported import_nodes(const GltfDocument& document, const MaterialIndices& materials, Map& map, Shared& shared);
+[[nodiscard]] Imported import_nodes(const GltfDocument& document,
+                                    const MaterialIndices& materials,
+                                    Map& map,
+                                    Shared& shared);
 
 [[nodiscard]] Digest digest_texture(const Texture& texture);
 [[nodiscard]] Digest digest_material(const Material& material, const Map& map);

@@ -11,40 +11,65 @@ namespace {
 constexpr double max_index = INT32_MAX, max_count = 1099511627776;  // 2^40
 
 // As the specification allows, 3.0 is a whole number too.
-bool is_whole(const Json& v, double most) { return v.is_number() && v.get<double>() >= 0 && v.get<double>() <= most && v.get<double>() == std::floor(v.get<double>()); }
+bool is_whole(const Json& v, double most) {
+    return v.is_number() && v.get<double>() >= 0 && v.get<double>() <= most &&
+           v.get<double>() == std::floor(v.get<double>());
+}
 
 bool has_type(const Json& v, Type type) {
     switch (type) {
-        case Type::number: return v.is_number();
-        case Type::index: return is_whole(v, max_index);
-        case Type::count: return is_whole(v, max_count);
-        case Type::string: return v.is_string();
-        case Type::boolean: return v.is_boolean();
-        case Type::object: return v.is_object();
-        case Type::index_array: return v.is_array() && std::ranges::all_of(v, [](const Json& element) { return has_type(element, Type::index); });
-        case Type::number_array: return v.is_array() && std::ranges::all_of(v, [](const Json& element) { return has_type(element, Type::number); });
+        case Type::number:
+            return v.is_number();
+        case Type::index:
+            return is_whole(v, max_index);
+        case Type::count:
+            return is_whole(v, max_count);
+        case Type::string:
+            return v.is_string();
+        case Type::boolean:
+            return v.is_boolean();
+        case Type::object:
+            return v.is_object();
+        case Type::index_array:
+            return v.is_array() &&
+                   std::ranges::all_of(v, [](const Json& element) { return has_type(element, Type::index); });
+        case Type::number_array:
+            return v.is_array() && std::ranges::all_of(v, [](const Json& element) {
+                       return has_type(element, Type::number);
+                   });
     }
     return false;
 }
 
 void write_plainly(Json& v, Type type) {
-    if (type == Type::index || type == Type::count) v = static_cast<std::uint64_t>(v.get<double>());
-    if (type == Type::number) v = v.get<double>();
+    if (type == Type::index || type == Type::count)
+        v = static_cast<std::uint64_t>(v.get<double>());
+    if (type == Type::number)
+        v = v.get<double>();
     if (type == Type::index_array || type == Type::number_array) {
-        for (Json& element : v) write_plainly(element, type == Type::index_array ? Type::index : Type::number);
+        for (Json& element : v)
+            write_plainly(element, type == Type::index_array ? Type::index : Type::number);
     }
 }
 
 std::string_view name_of(Type type) {
     switch (type) {
-        case Type::number: return "a number";
-        case Type::index: return "an index";
-        case Type::count: return "a size of at most 2^40";
-        case Type::string: return "a string";
-        case Type::boolean: return "true or false";
-        case Type::object: return "an object";
-        case Type::index_array: return "an array of indices";
-        case Type::number_array: return "an array of numbers";
+        case Type::number:
+            return "a number";
+        case Type::index:
+            return "an index";
+        case Type::count:
+            return "a size of at most 2^40";
+        case Type::string:
+            return "a string";
+        case Type::boolean:
+            return "true or false";
+        case Type::object:
+            return "an object";
+        case Type::index_array:
+            return "an array of indices";
+        case Type::number_array:
+            return "an array of numbers";
     }
     return "";
 }
@@ -53,24 +78,32 @@ std::string_view name_of(Type type) {
 
 std::string shown(const Json& value) {
     std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (text.size() > 40) text = text.substr(0, 37) + "...";
+    if (text.size() > 40)
+        text = text.substr(0, 37) + "...";
     return text;
 }
 
-Failure Checker::properties(Json& object, const std::string& where, std::initializer_list<Property> properties) const {
-    if (!object.is_object()) return fmt::format("{} is not an object", where);
+Failure Checker::properties(Json& object,
+                            const std::string& where,
+                            std::initializer_list<Property> properties) const {
+    if (!object.is_object())
+        return fmt::format("{} is not an object", where);
     for (const Property& p : properties) {
         const auto found = object.find(p.name);
         if (found == object.end()) {
-            if (p.required) return fmt::format("{} has no {}", where, p.name);
+            if (p.required)
+                return fmt::format("{} has no {}", where, p.name);
             continue;
         }
-        if (!has_type(*found, p.type)) return fmt::format("{}: {} must be {}, it is {}", where, p.name, name_of(p.type), shown(*found));
+        if (!has_type(*found, p.type))
+            return fmt::format("{}: {} must be {}, it is {}", where, p.name, name_of(p.type), shown(*found));
         if (p.length != 0 && found->size() != p.length) {
-            return fmt::format("{}: {} must have {} elements, it has {}", where, p.name, p.length, found->size());
+            return fmt::format(
+                "{}: {} must have {} elements, it has {}", where, p.name, p.length, found->size());
         }
         if (p.refers_to != nullptr) {
-            if (Failure failure = references(*found, fmt::format("{}: {}", where, p.name), p.refers_to)) return failure;
+            if (Failure failure = references(*found, fmt::format("{}: {}", where, p.name), p.refers_to))
+                return failure;
         }
         write_plainly(*found, p.type);
     }
@@ -79,8 +112,13 @@ Failure Checker::properties(Json& object, const std::string& where, std::initial
 
 Failure Checker::accessors_of(Json& attributes, const std::string& where) const {
     for (const auto& [name, accessor] : attributes.items()) {
-        if (!has_type(accessor, Type::index) || accessor.get<double>() >= static_cast<double>(size_of("accessors"))) {
-            return fmt::format("{}: {} names accessor {}, the file has {}", where, name, shown(accessor), size_of("accessors"));
+        if (!has_type(accessor, Type::index) ||
+            accessor.get<double>() >= static_cast<double>(size_of("accessors"))) {
+            return fmt::format("{}: {} names accessor {}, the file has {}",
+                               where,
+                               name,
+                               shown(accessor),
+                               size_of("accessors"));
         }
         write_plainly(accessor, Type::index);
     }
@@ -95,12 +133,15 @@ std::size_t Checker::size_of(const char* array) const {
 Failure Checker::references(const Json& value, const std::string& where, const char* array) const {
     const std::size_t size = size_of(array);
     const auto check = [&](const Json& index) -> Failure {
-        if (index.get<double>() < static_cast<double>(size)) return {};
+        if (index.get<double>() < static_cast<double>(size))
+            return {};
         return fmt::format("{} names {} {}, the file has {}", where, array, shown(index), size);
     };
-    if (!value.is_array()) return check(value);
+    if (!value.is_array())
+        return check(value);
     for (const Json& index : value) {
-        if (Failure failure = check(index)) return failure;
+        if (Failure failure = check(index))
+            return failure;
     }
     return {};
 }

@@ -28,13 +28,15 @@ struct Property {
 // A short form of the value for a message.
 [[nodiscard]] std::string shown(const Json& value);
 
-// Checks parts of a document, and writes the numbers that it has checked as tinygltf wants them: it skips an index
-// written as 3.0, and cuts large whole numbers in extensions to 32 bits.
+// Checks parts of a document, and writes the numbers that it has checked as tinygltf wants them: it skips an
+// index written as 3.0, and cuts large whole numbers in extensions to 32 bits.
 class Checker {
   public:
     explicit Checker(Json& root) : root_(root) {}
 
-    [[nodiscard]] Failure properties(Json& object, const std::string& where, std::initializer_list<Property> properties) const;
+    [[nodiscard]] Failure properties(Json& object,
+                                     const std::string& where,
+                                     std::initializer_list<Property> properties) const;
 
     // Each member of `attributes` names an accessor.
     [[nodiscard]] Failure accessors_of(Json& attributes, const std::string& where) const;
@@ -43,16 +45,21 @@ class Checker {
     template <class Check>
     [[nodiscard]] Failure each(const char* array, const char* singular, Check check) const {
         const auto found = root_.find(array);
-        if (found == root_.end()) return {};
-        if (!found->is_array()) return fmt::format("{} must be an array", array);
+        if (found == root_.end())
+            return {};
+        if (!found->is_array())
+            return fmt::format("{} must be an array", array);
         for (std::size_t n = 0; n < found->size(); ++n) {
-            if (Failure failure = check((*found)[n], fmt::format("{} {}", singular, n))) return failure;
+            if (Failure failure = check((*found)[n], fmt::format("{} {}", singular, n)))
+                return failure;
         }
         return {};
     }
 
     // REQUIRES: `index` was checked to refer to the array.
-    [[nodiscard]] const Json& element(const char* array, const Json& index) const { return root_[array][index.get<std::size_t>()]; }
+    [[nodiscard]] const Json& element(const char* array, const Json& index) const {
+        return root_[array][index.get<std::size_t>()];
+    }
 
   private:
     [[nodiscard]] std::size_t size_of(const char* array) const;

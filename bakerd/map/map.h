@@ -1,5 +1,6 @@
 // A map after import: meshes kept once, objects that place them, and all else the bake needs. Plain data,
-// constant after import, shared by all threads. World axes and units: format/SPEC.md section 2 (z up, metres).
+// constant after import, shared by all threads. World axes and units: format/SPEC.md section 2 (z up,
+// metres).
 #pragma once
 
 #include "bakerd/map/digest.h"
@@ -42,7 +43,8 @@ enum class Coverage : std::uint8_t {
     cutoff,  // all or nothing, by Texture::cutoff
 };
 
-// A picture at half the size or less: 16-bit linear RGBA. Colour is multiplied by coverage, coverage stands in w.
+// A picture at half the size or less: 16-bit linear RGBA. Colour is multiplied by coverage, coverage stands
+// in w.
 struct MipLevel {
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint16_t> rgba;
@@ -58,9 +60,9 @@ struct Texture {
     std::uint32_t width = 0, height = 0;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     Coverage coverage = Coverage::whole;
-    float cutoff = 0;                // of alpha; Coverage::cutoff only
-    std::vector<std::uint8_t> rgba;  // rows from v = 0
-    std::vector<MipLevel> mips;      // level 1 and up, to 1 x 1
+    float cutoff = 0;                      // of alpha; Coverage::cutoff only
+    std::vector<std::uint8_t> rgba;        // rows from v = 0
+    std::vector<MipLevel> mips;            // level 1 and up, to 1 x 1
     std::vector<AlphaRange> alpha_blocks;  // 8 x 8 texels each, row by row; empty where coverage is whole
     Digest digest;
 };
@@ -75,9 +77,9 @@ struct TextureView {
     [[nodiscard]] bool present() const { return texture != no_texture; }
 };
 
-// Albedo is base colour factor x texture x vertex colour, linear Rec. 709, at most max_albedo; where a surface also
-// transmits, both together are at most that. Metals and unlit materials are no exception: they send their base
-// colour back as Lambert surfaces do, and an unlit one shines no light.
+// Albedo is base colour factor x texture x vertex colour, linear Rec. 709, at most max_albedo; where a
+// surface also transmits, both together are at most that. Metals and unlit materials are no exception: they
+// send their base colour back as Lambert surfaces do, and an unlit one shines no light.
 inline constexpr float max_albedo = 0.95f;
 
 enum class AlphaMode : std::uint8_t {
@@ -89,9 +91,11 @@ enum class AlphaMode : std::uint8_t {
 struct Material {
     glm::vec4 base_colour{1};  // linear; w is alpha
     TextureView base_texture;
-    glm::vec3 emission{0};  // radiance of the front (of both sides where double_sided), nits: factor x strength
+    glm::vec3 emission{
+        0};  // radiance of the front (of both sides where double_sided), nits: factor x strength
     TextureView emission_texture;
-    // KHR_materials_diffuse_transmission: the share of light that goes through instead of back, and its colour.
+    // KHR_materials_diffuse_transmission: the share of light that goes through instead of back, and its
+    // colour.
     float transmission = 0;
     glm::vec3 transmission_colour{1};
     AlphaMode alpha_mode = AlphaMode::opaque;
@@ -102,11 +106,11 @@ struct Material {
 
 // Triangles of one material. Vertices stand in the order of their first use.
 struct Primitive {
-    std::vector<glm::vec3> positions;   // object space
-    std::vector<glm::uvec3> triangles;  // counter-clockwise seen from the front
-    std::vector<glm::vec2> uvs;         // of the base texture; empty unless the material has one
+    std::vector<glm::vec3> positions;     // object space
+    std::vector<glm::uvec3> triangles;    // counter-clockwise seen from the front
+    std::vector<glm::vec2> uvs;           // of the base texture; empty unless the material has one
     std::vector<glm::vec2> emission_uvs;  // of the emission texture; empty unless the material has one
-    std::vector<glm::vec4> colours;     // linear; empty unless the mesh has them
+    std::vector<glm::vec4> colours;       // linear; empty unless the mesh has them
     std::uint32_t material = 0;
     Digest digest;
 };
@@ -119,7 +123,8 @@ struct Mesh {
 
 enum class Role : std::uint8_t { fixed, vegetation };  // "static" and "vegetation"
 
-// One placed mesh. `world_from_object` may mirror; then the winding of the object space still tells the front.
+// One placed mesh. `world_from_object` may mirror; then the winding of the object space still tells the
+// front.
 struct Object {
     std::uint32_t mesh = 0;
     Role role = Role::fixed;

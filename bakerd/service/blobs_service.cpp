@@ -11,21 +11,31 @@ constexpr std::int64_t max_blob_bytes = (std::int64_t{1} << 31) - 1;
 
 farm::Result<map::Digest> checked(const v1::Blob& blob) {
     if (blob.size_bytes() < 0 || blob.size_bytes() > max_blob_bytes) {
-        return farm::fail(farm::ErrorCode::invalid_argument, fmt::format("a blob of {} bytes is over the limit of 2 GiB", blob.size_bytes()));
+        return farm::fail(farm::ErrorCode::invalid_argument,
+                          fmt::format("a blob of {} bytes is over the limit of 2 GiB", blob.size_bytes()));
     }
     return digest_from_text(blob.sha256());
 }
 
-std::span<const std::uint8_t> bytes_of(const std::string& text) { return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}; }
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
 
 }  // namespace
 
-grpc::Status BlobsService::FindMissingBlobs(grpc::ServerContext*, const v1::FindMissingBlobsRequest* request, v1::FindMissingBlobsResponse* response) {
-    if (request->blobs_size() > max_blobs_a_request) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("{} blobs in one request, the limit is {}", request->blobs_size(), max_blobs_a_request)};
+grpc::Status BlobsService::FindMissingBlobs(grpc::ServerContext*,
+                                            const v1::FindMissingBlobsRequest* request,
+                                            v1::FindMissingBlobsResponse* response) {
+    if (request->blobs_size() > max_blobs_a_request)
+        return {grpc::StatusCode::INVALID_ARGUMENT,
+                fmt::format(
+                    "{} blobs in one request, the limit is {}", request->blobs_size(), max_blobs_a_request)};
     for (const v1::Blob& blob : request->blobs()) {
         const auto digest = checked(blob);
-        if (!digest) return to_status(digest.error());
-        if (farm_.blobs().has(*digest)) continue;
+        if (!digest)
+            return to_status(digest.error());
+        if (farm_.blobs().has(*digest))
+            continue;
         auto* missing = response->add_missing();
         *missing->mutable_blob() = blob;
         missing->set_received_bytes(farm_.blobs().received_bytes(*digest));
@@ -33,22 +43,35 @@ grpc::Status BlobsService::FindMissingBlobs(grpc::ServerContext*, const v1::Find
     return grpc::Status::OK;
 }
 
-grpc::Status BlobsService::UploadBlob(grpc::ServerContext*, grpc::ServerReader<v1::UploadBlobRequest>* reader, v1::UploadBlobResponse* response) {
+grpc::Status BlobsService::UploadBlob(grpc::ServerContext*,
+                                      grpc::ServerReader<v1::UploadBlobRequest>* reader,
+                                      v1::UploadBlobResponse* response) {
     v1::UploadBlobRequest request;
-    if (!reader->Read(&request)) return {grpc::StatusCode::INVALID_ARGUMENT, "the upload has no first message"};
+    if (!reader->Read(&request))
+        return {grpc::StatusCode::INVALID_ARGUMENT, "the upload has no first message"};
     const v1::Blob blob = request.blob();
     const auto digest = checked(blob);
-    if (!digest) return to_status(digest.error());
-    if (request.offset() < 0 || request.offset() > blob.size_bytes()) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("the offset {} lies outside the blob of {} bytes", request.offset(), blob.size_bytes())};
+    if (!digest)
+        return to_status(digest.error());
+    if (request.offset() < 0 || request.offset() > blob.size_bytes())
+        return {grpc::StatusCode::INVALID_ARGUMENT,
+                fmt::format(
+                    "the offset {} lies outside the blob of {} bytes", request.offset(), blob.size_bytes())};
     *response->mutable_blob() = blob;
-    if (farm_.blobs().has(*digest)) return grpc::Status::OK;
+    if (farm_.blobs().has(*digest))
+        return grpc::Status::OK;
     auto upload = farm_.blobs().upload(*digest, blob.size_bytes(), request.offset());
-    if (!upload) return to_status(upload.error());
+    if (!upload)
+        return to_status(upload.error());
     do {
-        if (request.data().size() > max_chunk_bytes) return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("a message of {} data bytes, the limit is 1 MiB", request.data().size())};
-        if (auto appended = upload->append(bytes_of(request.data())); !appended) return to_status(appended.error());
+        if (request.data().size() > max_chunk_bytes)
+            return {grpc::StatusCode::INVALID_ARGUMENT,
+                    fmt::format("a message of {} data bytes, the limit is 1 MiB", request.data().size())};
+        if (auto appended = upload->append(bytes_of(request.data())); !appended)
+            return to_status(appended.error());
     } while (reader->Read(&request));
-    if (auto finished = upload->finish(); !finished) return to_status(finished.error());
+    if (auto finished = upload->finish(); !finished)
+        return to_status(finished.error());
     return grpc::Status::OK;
 }
 

@@ -5,7 +5,8 @@ namespace drtv::service {
 namespace {
 
 grpc::Status answer(const farm::Result<farm::CacheView>& view, v1::CacheState* response) {
-    if (!view) return to_status(view.error());
+    if (!view)
+        return to_status(view.error());
     response->set_results(view->counts.results);
     response->set_size_bytes(view->counts.bytes);
     response->set_limit_bytes(view->limit_bytes);
@@ -17,8 +18,16 @@ grpc::Status answer(const farm::Result<farm::CacheView>& view, v1::CacheState* r
 
 }  // namespace
 
-grpc::Status CacheService::GetCache(grpc::ServerContext*, const v1::GetCacheRequest*, v1::CacheState* response) { return answer(farm_.cache(), response); }
+grpc::Status CacheService::GetCache(grpc::ServerContext*,
+                                    const v1::GetCacheRequest*,
+                                    v1::CacheState* response) {
+    return answer(farm_.cache(), response);
+}
 
-grpc::Status CacheService::ClearCache(grpc::ServerContext*, const v1::ClearCacheRequest*, v1::CacheState* response) { return answer(farm_.clear_cache(), response); }
+grpc::Status CacheService::ClearCache(grpc::ServerContext*,
+                                      const v1::ClearCacheRequest*,
+                                      v1::CacheState* response) {
+    return answer(farm_.clear_cache(), response);
+}
 
 }  // namespace drtv::service

@@ -12,15 +12,20 @@ namespace {
 // Each watch holds a thread of the server.
 constexpr int max_watchers = 256;
 constexpr std::chrono::milliseconds watch_interval{100};  // at most ten messages a second
-constexpr std::chrono::milliseconds watch_patience{500};  // how soon a gone client or a stopping server is noticed
+constexpr std::chrono::milliseconds watch_patience{
+    500};  // how soon a gone client or a stopping server is noticed
 constexpr std::int64_t default_page = 50, max_page = 1000;
 
 v1::Job::State to_proto(farm::JobState state) {
     switch (state) {
-        case farm::JobState::running: return v1::Job::RUNNING;
-        case farm::JobState::succeeded: return v1::Job::SUCCEEDED;
-        case farm::JobState::failed: return v1::Job::FAILED;
-        case farm::JobState::cancelled: return v1::Job::CANCELLED;
+        case farm::JobState::running:
+            return v1::Job::RUNNING;
+        case farm::JobState::succeeded:
+            return v1::Job::SUCCEEDED;
+        case farm::JobState::failed:
+            return v1::Job::FAILED;
+        case farm::JobState::cancelled:
+            return v1::Job::CANCELLED;
     }
     return v1::Job::STATE_UNSPECIFIED;
 }
@@ -30,7 +35,8 @@ void fill(const farm::JobView& view, v1::Job& out) {
     out.set_name(job_name(row.id));
     out.set_map(map_name(row.manifest));
     out.mutable_settings()->set_preset(row.preset);
-    for (const auto& [key, value] : farm::decode_overrides(row.overrides)) (*out.mutable_settings()->mutable_overrides())[key] = value;
+    for (const auto& [key, value] : farm::decode_overrides(row.overrides))
+        (*out.mutable_settings()->mutable_overrides())[key] = value;
     if (const auto region = farm::decode_region(row.region)) {
         out.mutable_region()->set_x0(region->x0);
         out.mutable_region()->set_y0(region->y0);
@@ -51,49 +57,64 @@ void fill(const farm::JobView& view, v1::Job& out) {
     out.set_seconds_left(view.seconds_left);
     out.set_create_time_seconds(row.created_seconds);
     out.set_end_time_seconds(row.ended_seconds);
-    for (const std::string& warning : view.warnings) out.add_warnings(warning);
+    for (const std::string& warning : view.warnings)
+        out.add_warnings(warning);
 }
 
 v1::PlannedSector::Verdict to_proto(bake::Verdict verdict) {
     switch (verdict) {
-        case bake::Verdict::hit: return v1::PlannedSector::HIT;
-        case bake::Verdict::near_hit: return v1::PlannedSector::NEAR_HIT;
-        case bake::Verdict::rebake: return v1::PlannedSector::REBAKE;
+        case bake::Verdict::hit:
+            return v1::PlannedSector::HIT;
+        case bake::Verdict::near_hit:
+            return v1::PlannedSector::NEAR_HIT;
+        case bake::Verdict::rebake:
+            return v1::PlannedSector::REBAKE;
     }
     return v1::PlannedSector::VERDICT_UNSPECIFIED;
 }
 
 farm::Result<farm::JobRequest> wanted_job(const v1::Job& job) {
     const auto map = map_from_name(job.map());
-    if (!map) return tl::unexpected(map.error());
+    if (!map)
+        return tl::unexpected(map.error());
     farm::JobRequest wanted;
     wanted.manifest = *map;
     wanted.preset = job.settings().preset();
     wanted.overrides.insert(job.settings().overrides().begin(), job.settings().overrides().end());
-    if (job.has_region()) wanted.region = farm::Region{job.region().x0(), job.region().y0(), job.region().x1(), job.region().y1()};
+    if (job.has_region())
+        wanted.region =
+            farm::Region{job.region().x0(), job.region().y0(), job.region().x1(), job.region().y1()};
     return wanted;
 }
 
 grpc::Status answer(const farm::Result<farm::JobView>& view, v1::Job* response) {
-    if (!view) return to_status(view.error());
+    if (!view)
+        return to_status(view.error());
     fill(*view, *response);
     return grpc::Status::OK;
 }
 
 }  // namespace
 
-grpc::Status JobsService::CreateJob(grpc::ServerContext*, const v1::CreateJobRequest* request, v1::Job* response) {
+grpc::Status JobsService::CreateJob(grpc::ServerContext*,
+                                    const v1::CreateJobRequest* request,
+                                    v1::Job* response) {
     auto wanted = wanted_job(request->job());
-    if (!wanted) return to_status(wanted.error());
+    if (!wanted)
+        return to_status(wanted.error());
     wanted->request_id = request->request_id();
     return answer(farm_.create_job(*wanted), response);
 }
 
-grpc::Status JobsService::PlanJob(grpc::ServerContext*, const v1::PlanJobRequest* request, v1::Plan* response) {
+grpc::Status JobsService::PlanJob(grpc::ServerContext*,
+                                  const v1::PlanJobRequest* request,
+                                  v1::Plan* response) {
     const auto wanted = wanted_job(request->job());
-    if (!wanted) return to_status(wanted.error());
+    if (!wanted)
+        return to_status(wanted.error());
     const auto view = farm_.plan_job(*wanted);
-    if (!view) return to_status(view.error());
+    if (!view)
+        return to_status(view.error());
     for (const farm::PlannedSector& planned : view->plan.sectors) {
         v1::PlannedSector& sector = *response->add_sectors();
         sector.set_i(planned.sector.i);
@@ -101,7 +122,8 @@ grpc::Status JobsService::PlanJob(grpc::ServerContext*, const v1::PlanJobRequest
         sector.set_verdict(to_proto(planned.verdict));
         sector.set_bound(static_cast<double>(planned.bound));
         sector.set_reason(planned.reason);
-        if (planned.verdict == bake::Verdict::rebake) sector.set_share(static_cast<double>(planned.share));
+        if (planned.verdict == bake::Verdict::rebake)
+            sector.set_share(static_cast<double>(planned.share));
     }
     for (const auto& [what, bounds] : view->plan.changes) {
         v1::MapChange& change = *response->add_changes();
@@ -114,54 +136,80 @@ grpc::Status JobsService::PlanJob(grpc::ServerContext*, const v1::PlanJobRequest
         change.set_z1(static_cast<double>(bounds.high.z));
     }
     response->set_seconds(view->seconds);
-    for (const std::string& warning : view->plan.warnings) response->add_warnings(warning);
+    for (const std::string& warning : view->plan.warnings)
+        response->add_warnings(warning);
     return grpc::Status::OK;
 }
 
 grpc::Status JobsService::GetJob(grpc::ServerContext*, const v1::GetJobRequest* request, v1::Job* response) {
     const auto id = job_from_name(request->name());
-    if (!id) return to_status(id.error());
+    if (!id)
+        return to_status(id.error());
     return answer(farm_.get_job(*id), response);
 }
 
-grpc::Status JobsService::ListJobs(grpc::ServerContext*, const v1::ListJobsRequest* request, v1::ListJobsResponse* response) {
-    const auto page = page_of(request->page_token(), request->page_size(), std::numeric_limits<std::int64_t>::max(), default_page, max_page);
-    if (!page) return to_status(page.error());
+grpc::Status JobsService::ListJobs(grpc::ServerContext*,
+                                   const v1::ListJobsRequest* request,
+                                   v1::ListJobsResponse* response) {
+    const auto page = page_of(request->page_token(),
+                              request->page_size(),
+                              std::numeric_limits<std::int64_t>::max(),
+                              default_page,
+                              max_page);
+    if (!page)
+        return to_status(page.error());
     const auto size = static_cast<std::size_t>(page->size);
     const auto views = farm_.list_jobs(page->from, size + 1);
-    if (!views) return to_status(views.error());
-    for (std::size_t n = 0; n < views->size() && n < size; ++n) fill((*views)[n], *response->add_jobs());
-    if (views->size() > size) response->set_next_page_token(std::to_string((*views)[size - 1].row.id));
+    if (!views)
+        return to_status(views.error());
+    for (std::size_t n = 0; n < views->size() && n < size; ++n)
+        fill((*views)[n], *response->add_jobs());
+    if (views->size() > size)
+        response->set_next_page_token(std::to_string((*views)[size - 1].row.id));
     return grpc::Status::OK;
 }
 
-grpc::Status JobsService::CancelJob(grpc::ServerContext*, const v1::CancelJobRequest* request, v1::Job* response) {
+grpc::Status JobsService::CancelJob(grpc::ServerContext*,
+                                    const v1::CancelJobRequest* request,
+                                    v1::Job* response) {
     const auto id = job_from_name(request->name());
-    if (!id) return to_status(id.error());
+    if (!id)
+        return to_status(id.error());
     return answer(farm_.cancel_job(*id), response);
 }
 
-grpc::Status JobsService::WatchJob(grpc::ServerContext* context, const v1::WatchJobRequest* request, grpc::ServerWriter<v1::Job>* writer) {
+grpc::Status JobsService::WatchJob(grpc::ServerContext* context,
+                                   const v1::WatchJobRequest* request,
+                                   grpc::ServerWriter<v1::Job>* writer) {
     const auto id = job_from_name(request->name());
-    if (!id) return to_status(id.error());
+    if (!id)
+        return to_status(id.error());
     struct Seat {
         std::atomic<int>& taken;
         int number;
         explicit Seat(std::atomic<int>& watchers) : taken(watchers), number(++watchers) {}
         ~Seat() { --taken; }
     } seat(watchers_);
-    if (seat.number > max_watchers) return {grpc::StatusCode::RESOURCE_EXHAUSTED, fmt::format("{} clients are watching already", max_watchers)};
+    if (seat.number > max_watchers)
+        return {grpc::StatusCode::RESOURCE_EXHAUSTED,
+                fmt::format("{} clients are watching already", max_watchers)};
     for (std::uint64_t seen = 0;;) {
         const auto view = farm_.wait_for_change(*id, seen, watch_patience);
-        if (!view) return to_status(view.error());
-        if (context->IsCancelled()) return grpc::Status::CANCELLED;
-        if (stopping_) return {grpc::StatusCode::UNAVAILABLE, "the server is stopping"};
-        if (view->version == seen) continue;
+        if (!view)
+            return to_status(view.error());
+        if (context->IsCancelled())
+            return grpc::Status::CANCELLED;
+        if (stopping_)
+            return {grpc::StatusCode::UNAVAILABLE, "the server is stopping"};
+        if (view->version == seen)
+            continue;
         seen = view->version;
         v1::Job job;
         fill(*view, job);
-        if (!writer->Write(job)) return grpc::Status::CANCELLED;
-        if (view->row.state != farm::JobState::running) return grpc::Status::OK;
+        if (!writer->Write(job))
+            return grpc::Status::CANCELLED;
+        if (view->row.state != farm::JobState::running)
+            return grpc::Status::OK;
         std::this_thread::sleep_for(watch_interval);
     }
 }

@@ -13,7 +13,7 @@ namespace drtv::service {
 
 [[nodiscard]] grpc::Status to_status(const farm::Error& error);
 
-[[nodiscard]] std::string job_name(std::int64_t id);             // "jobs/12"
+[[nodiscard]] std::string job_name(std::int64_t id);            // "jobs/12"
 [[nodiscard]] std::string map_name(const map::Digest& digest);  // "maps/<hex>"
 
 // invalid_argument with a sentence for anything else.
@@ -21,10 +21,15 @@ namespace drtv::service {
 [[nodiscard]] farm::Result<map::Digest> map_from_name(const std::string& name);
 [[nodiscard]] farm::Result<map::Digest> digest_from_text(const std::string& hex);
 
-// A list request's page: where it starts (the number in its token, `start` without one) and how many it holds.
+// A list request's page: where it starts (the number in its token, `start` without one) and how many it
+// holds.
 struct Page {
     std::int64_t from = 0, size = 0;
 };
-[[nodiscard]] farm::Result<Page> page_of(const std::string& token, std::int32_t size, std::int64_t start, std::int64_t default_size, std::int64_t max_size);
+[[nodiscard]] farm::Result<Page> page_of(const std::string& token,
+                                         std::int32_t size,
+                                         std::int64_t start,
+                                         std::int64_t default_size,
+                                         std::int64_t max_size);
 
 }  // namespace drtv::service

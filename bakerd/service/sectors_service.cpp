@@ -11,11 +11,15 @@ namespace {
 constexpr std::int64_t default_page = 1000, max_page = 10000;
 
 v1::Sector::State to_proto(const farm::SectorView& view) {
-    if (view.running) return v1::Sector::RUNNING;
+    if (view.running)
+        return v1::Sector::RUNNING;
     switch (view.task.state) {
-        case farm::TaskState::pending: return v1::Sector::PENDING;
-        case farm::TaskState::done: return v1::Sector::DONE;
-        case farm::TaskState::failed: return v1::Sector::FAILED;
+        case farm::TaskState::pending:
+            return v1::Sector::PENDING;
+        case farm::TaskState::done:
+            return v1::Sector::DONE;
+        case farm::TaskState::failed:
+            return v1::Sector::FAILED;
     }
     return v1::Sector::STATE_UNSPECIFIED;
 }
@@ -27,75 +31,107 @@ void fill(const farm::SectorView& view, v1::Sector& out) {
     out.set_state(to_proto(view));
     out.set_failed_attempts(row.failed_attempts);
     out.set_error(row.error);
-    if (row.state != farm::TaskState::done) return;
+    if (row.state != farm::TaskState::done)
+        return;
     out.set_sha256(to_hex(row.result.result));
     out.set_size_bytes(row.result.size_bytes);
     out.set_probes(row.result.probes);
     out.set_rays(row.result.rays);
-    for (const std::string& warning : row.result.warnings) out.add_warnings(warning);
+    for (const std::string& warning : row.result.warnings)
+        out.add_warnings(warning);
 }
 
 }  // namespace
 
-grpc::Status SectorsService::ListSectors(grpc::ServerContext*, const v1::ListSectorsRequest* request, v1::ListSectorsResponse* response) {
+grpc::Status SectorsService::ListSectors(grpc::ServerContext*,
+                                         const v1::ListSectorsRequest* request,
+                                         v1::ListSectorsResponse* response) {
     const auto job = job_from_name(request->job());
-    if (!job) return to_status(job.error());
+    if (!job)
+        return to_status(job.error());
     const auto page = page_of(request->page_token(), request->page_size(), 0, default_page, max_page);
-    if (!page) return to_status(page.error());
+    if (!page)
+        return to_status(page.error());
     const auto views = farm_.list_sectors(*job, page->from, page->size + 1);
-    if (!views) return to_status(views.error());
+    if (!views)
+        return to_status(views.error());
     const auto size = static_cast<std::size_t>(page->size);
-    for (std::size_t n = 0; n < views->size() && n < size; ++n) fill((*views)[n], *response->add_sectors());
-    if (views->size() > size) response->set_next_page_token(std::to_string(page->from + page->size));
+    for (std::size_t n = 0; n < views->size() && n < size; ++n)
+        fill((*views)[n], *response->add_sectors());
+    if (views->size() > size)
+        response->set_next_page_token(std::to_string(page->from + page->size));
     return grpc::Status::OK;
 }
 
-grpc::Status SectorsService::PullSectors(grpc::ServerContext*, const v1::PullSectorsRequest* request, grpc::ServerWriter<v1::PullSectorsResponse>* writer) {
+grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
+                                         const v1::PullSectorsRequest* request,
+                                         grpc::ServerWriter<v1::PullSectorsResponse>* writer) {
     const auto job = job_from_name(request->job());
-    if (!job) return to_status(job.error());
+    if (!job)
+        return to_status(job.error());
     std::int64_t lost = 0;
     std::string first_loss;
     const auto send_or_note = [&](const farm::SectorView& view) -> grpc::Status {
         grpc::Status status = send(view, *writer);
-        if (status.error_code() != grpc::StatusCode::DATA_LOSS) return status;
-        if (++lost == 1) first_loss = status.error_message();
+        if (status.error_code() != grpc::StatusCode::DATA_LOSS)
+            return status;
+        if (++lost == 1)
+            first_loss = status.error_message();
         return grpc::Status::OK;
     };
     const auto end = [&]() -> grpc::Status {
-        if (lost == 0) return grpc::Status::OK;
+        if (lost == 0)
+            return grpc::Status::OK;
         const std::string more = lost > 1 ? fmt::format(" (and {} more)", lost - 1) : "";
-        return {grpc::StatusCode::DATA_LOSS, fmt::format("{}{}; submit the map again to bake {} anew", first_loss, more, lost > 1 ? "them" : "it")};
+        return {
+            grpc::StatusCode::DATA_LOSS,
+            fmt::format(
+                "{}{}; submit the map again to bake {} anew", first_loss, more, lost > 1 ? "them" : "it")};
     };
     if (request->sectors_size() == 0) {
         for (std::int64_t first = 0;; first += default_page) {
             const auto views = farm_.list_sectors(*job, first, default_page);
-            if (!views) return to_status(views.error());
+            if (!views)
+                return to_status(views.error());
             for (const farm::SectorView& view : *views) {
-                if (view.task.state != farm::TaskState::done) continue;
-                if (grpc::Status status = send_or_note(view); !status.ok()) return status;
+                if (view.task.state != farm::TaskState::done)
+                    continue;
+                if (grpc::Status status = send_or_note(view); !status.ok())
+                    return status;
             }
-            if (views->size() < static_cast<std::size_t>(default_page)) return end();
+            if (views->size() < static_cast<std::size_t>(default_page))
+                return end();
         }
     }
     for (const v1::SectorCoordinate& coordinate : request->sectors()) {
         const auto view = farm_.get_sector(*job, {coordinate.i(), coordinate.j()});
-        if (!view) return to_status(view.error());
-        if (view->task.state != farm::TaskState::done) return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("sector ({}, {}) is not done", coordinate.i(), coordinate.j())};
-        if (grpc::Status status = send_or_note(*view); !status.ok()) return status;
+        if (!view)
+            return to_status(view.error());
+        if (view->task.state != farm::TaskState::done)
+            return {grpc::StatusCode::FAILED_PRECONDITION,
+                    fmt::format("sector ({}, {}) is not done", coordinate.i(), coordinate.j())};
+        if (grpc::Status status = send_or_note(*view); !status.ok())
+            return status;
     }
     return end();
 }
 
-grpc::Status SectorsService::send(const farm::SectorView& view, grpc::ServerWriter<v1::PullSectorsResponse>& writer) {
+grpc::Status SectorsService::send(const farm::SectorView& view,
+                                  grpc::ServerWriter<v1::PullSectorsResponse>& writer) {
     const auto bytes = farm_.blobs().get(view.task.result.result);
-    if (!bytes) return {grpc::StatusCode::DATA_LOSS, fmt::format("sector ({}, {}): {}", view.task.sector.i, view.task.sector.j, bytes.error().message)};
+    if (!bytes)
+        return {grpc::StatusCode::DATA_LOSS,
+                fmt::format(
+                    "sector ({}, {}): {}", view.task.sector.i, view.task.sector.j, bytes.error().message)};
     v1::PullSectorsResponse message;
     fill(view, *message.mutable_sector());
-    if (!writer.Write(message)) return grpc::Status::CANCELLED;
+    if (!writer.Write(message))
+        return grpc::Status::CANCELLED;
     message.clear_sector();
     for (std::size_t at = 0; at < bytes->size(); at += max_chunk_bytes) {
         message.set_data(bytes->data() + at, std::min(max_chunk_bytes, bytes->size() - at));
-        if (!writer.Write(message)) return grpc::Status::CANCELLED;
+        if (!writer.Write(message))
+            return grpc::Status::CANCELLED;
     }
     return grpc::Status::OK;
 }

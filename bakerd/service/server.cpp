@@ -21,18 +21,23 @@ constexpr int max_message_bytes = 4 << 20;
 
 tl::expected<std::string, std::string> read_text(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file) return tl::unexpected(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+    if (!file)
+        return tl::unexpected(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
     return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
 tl::expected<std::shared_ptr<grpc::ServerCredentials>, std::string> credentials(const TlsFiles& tls) {
-    if (tls.certificate.empty() && tls.key.empty() && tls.client_ca.empty()) return grpc::InsecureServerCredentials();
-    if (tls.certificate.empty() || tls.key.empty() || tls.client_ca.empty()) return tl::unexpected(std::string("TLS needs all three of --tls-cert, --tls-key and --tls-client-ca"));
+    if (tls.certificate.empty() && tls.key.empty() && tls.client_ca.empty())
+        return grpc::InsecureServerCredentials();
+    if (tls.certificate.empty() || tls.key.empty() || tls.client_ca.empty())
+        return tl::unexpected(
+            std::string("TLS needs all three of --tls-cert, --tls-key and --tls-client-ca"));
     std::array<std::string, 3> texts;
     const std::array<std::string, 3> paths = {tls.certificate, tls.key, tls.client_ca};
     for (std::size_t n = 0; n < paths.size(); ++n) {
         auto text = read_text(paths[n]);
-        if (!text) return tl::unexpected(text.error());
+        if (!text)
+            return tl::unexpected(text.error());
         texts[n] = std::move(*text);
     }
     grpc::SslServerCredentialsOptions options(GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
@@ -47,14 +52,18 @@ tl::expected<void, std::string> check_address(const std::string& address) {
     const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
     int number = -1;
     const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-    if (error == std::errc() && end == port.data() + port.size() && number >= 0 && number <= 65535 && colon > 0) return {};
-    return tl::unexpected(fmt::format("the address '{}' is not HOST:PORT with a port from 0 to 65535", address));
+    if (error == std::errc() && end == port.data() + port.size() && number >= 0 && number <= 65535 &&
+        colon > 0)
+        return {};
+    return tl::unexpected(
+        fmt::format("the address '{}' is not HOST:PORT with a port from 0 to 65535", address));
 }
 
 }  // namespace
 
 struct Server::State {
-    explicit State(farm::Farm& farm) : blobs(farm), maps(farm), jobs(farm, stopping), sectors(farm), cache(farm) {}
+    explicit State(farm::Farm& farm)
+        : blobs(farm), maps(farm), jobs(farm, stopping), sectors(farm), cache(farm) {}
     std::atomic<bool> stopping{false};
     BlobsService blobs;
     MapsService maps;
@@ -68,10 +77,14 @@ struct Server::State {
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-tl::expected<std::unique_ptr<Server>, std::string> Server::start(farm::Farm& farm, const std::string& address, const TlsFiles& tls) {
-    if (auto checked = check_address(address); !checked) return tl::unexpected(checked.error());
+tl::expected<std::unique_ptr<Server>, std::string> Server::start(farm::Farm& farm,
+                                                                 const std::string& address,
+                                                                 const TlsFiles& tls) {
+    if (auto checked = check_address(address); !checked)
+        return tl::unexpected(checked.error());
     const auto secured = credentials(tls);
-    if (!secured) return tl::unexpected(secured.error());
+    if (!secured)
+        return tl::unexpected(secured.error());
     grpc::EnableDefaultHealthCheckService(true);
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
     auto state = std::make_unique<State>(farm);
@@ -87,17 +100,26 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(farm::Farm& far
     builder.RegisterService(&state->sectors);
     builder.RegisterService(&state->cache);
     state->server = builder.BuildAndStart();
-    if (!state->server || state->port == 0) return tl::unexpected(fmt::format("cannot listen on {}: the port is in use, or the host is not an address of this machine", address));
+    if (!state->server || state->port == 0)
+        return tl::unexpected(fmt::format(
+            "cannot listen on {}: the port is in use, or the host is not an address of this machine",
+            address));
     return std::unique_ptr<Server>(new Server(std::move(state)));
 }
 
-Server::~Server() { stop(); }
+Server::~Server() {
+    stop();
+}
 
-std::string Server::address() const { return fmt::format("{}:{}", state_->host, state_->port); }
+std::string Server::address() const {
+    return fmt::format("{}:{}", state_->host, state_->port);
+}
 
 void Server::stop() {
-    if (state_->stopping.exchange(true)) return;
-    if (auto* health = state_->server->GetHealthCheckService()) health->SetServingStatus(false);
+    if (state_->stopping.exchange(true))
+        return;
+    if (auto* health = state_->server->GetHealthCheckService())
+        health->SetServingStatus(false);
     state_->server->Shutdown(std::chrono::system_clock::now() + std::chrono::seconds(2));
     state_->server->Wait();
 }

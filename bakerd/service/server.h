@@ -17,7 +17,9 @@ struct TlsFiles {
 class Server {
   public:
     // Listens at once. A sentence when the address is wrong or taken, or a TLS file cannot be read.
-    [[nodiscard]] static tl::expected<std::unique_ptr<Server>, std::string> start(farm::Farm& farm, const std::string& address, const TlsFiles& tls);
+    [[nodiscard]] static tl::expected<std::unique_ptr<Server>, std::string> start(farm::Farm& farm,
+                                                                                  const std::string& address,
+                                                                                  const TlsFiles& tls);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

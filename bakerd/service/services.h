@@ -16,8 +16,12 @@ namespace drtv::service {
 class BlobsService final : public v1::Blobs::Service {
   public:
     explicit BlobsService(farm::Farm& farm) : farm_(farm) {}
-    grpc::Status FindMissingBlobs(grpc::ServerContext* context, const v1::FindMissingBlobsRequest* request, v1::FindMissingBlobsResponse* response) override;
-    grpc::Status UploadBlob(grpc::ServerContext* context, grpc::ServerReader<v1::UploadBlobRequest>* reader, v1::UploadBlobResponse* response) override;
+    grpc::Status FindMissingBlobs(grpc::ServerContext* context,
+                                  const v1::FindMissingBlobsRequest* request,
+                                  v1::FindMissingBlobsResponse* response) override;
+    grpc::Status UploadBlob(grpc::ServerContext* context,
+                            grpc::ServerReader<v1::UploadBlobRequest>* reader,
+                            v1::UploadBlobResponse* response) override;
 
   private:
     farm::Farm& farm_;
@@ -26,8 +30,12 @@ class BlobsService final : public v1::Blobs::Service {
 class MapsService final : public v1::Maps::Service {
   public:
     explicit MapsService(farm::Farm& farm) : farm_(farm) {}
-    grpc::Status CreateMap(grpc::ServerContext* context, const v1::CreateMapRequest* request, v1::Map* response) override;
-    grpc::Status GetMap(grpc::ServerContext* context, const v1::GetMapRequest* request, v1::Map* response) override;
+    grpc::Status CreateMap(grpc::ServerContext* context,
+                           const v1::CreateMapRequest* request,
+                           v1::Map* response) override;
+    grpc::Status GetMap(grpc::ServerContext* context,
+                        const v1::GetMapRequest* request,
+                        v1::Map* response) override;
 
   private:
     farm::Farm& farm_;
@@ -37,12 +45,24 @@ class JobsService final : public v1::Jobs::Service {
   public:
     // `stopping` ends watches when the server does.
     JobsService(farm::Farm& farm, const std::atomic<bool>& stopping) : farm_(farm), stopping_(stopping) {}
-    grpc::Status CreateJob(grpc::ServerContext* context, const v1::CreateJobRequest* request, v1::Job* response) override;
-    grpc::Status PlanJob(grpc::ServerContext* context, const v1::PlanJobRequest* request, v1::Plan* response) override;
-    grpc::Status GetJob(grpc::ServerContext* context, const v1::GetJobRequest* request, v1::Job* response) override;
-    grpc::Status ListJobs(grpc::ServerContext* context, const v1::ListJobsRequest* request, v1::ListJobsResponse* response) override;
-    grpc::Status CancelJob(grpc::ServerContext* context, const v1::CancelJobRequest* request, v1::Job* response) override;
-    grpc::Status WatchJob(grpc::ServerContext* context, const v1::WatchJobRequest* request, grpc::ServerWriter<v1::Job>* writer) override;
+    grpc::Status CreateJob(grpc::ServerContext* context,
+                           const v1::CreateJobRequest* request,
+                           v1::Job* response) override;
+    grpc::Status PlanJob(grpc::ServerContext* context,
+                         const v1::PlanJobRequest* request,
+                         v1::Plan* response) override;
+    grpc::Status GetJob(grpc::ServerContext* context,
+                        const v1::GetJobRequest* request,
+                        v1::Job* response) override;
+    grpc::Status ListJobs(grpc::ServerContext* context,
+                          const v1::ListJobsRequest* request,
+                          v1::ListJobsResponse* response) override;
+    grpc::Status CancelJob(grpc::ServerContext* context,
+                           const v1::CancelJobRequest* request,
+                           v1::Job* response) override;
+    grpc::Status WatchJob(grpc::ServerContext* context,
+                          const v1::WatchJobRequest* request,
+                          grpc::ServerWriter<v1::Job>* writer) override;
 
   private:
     farm::Farm& farm_;
@@ -53,19 +73,28 @@ class JobsService final : public v1::Jobs::Service {
 class SectorsService final : public v1::Sectors::Service {
   public:
     explicit SectorsService(farm::Farm& farm) : farm_(farm) {}
-    grpc::Status ListSectors(grpc::ServerContext* context, const v1::ListSectorsRequest* request, v1::ListSectorsResponse* response) override;
-    grpc::Status PullSectors(grpc::ServerContext* context, const v1::PullSectorsRequest* request, grpc::ServerWriter<v1::PullSectorsResponse>* writer) override;
+    grpc::Status ListSectors(grpc::ServerContext* context,
+                             const v1::ListSectorsRequest* request,
+                             v1::ListSectorsResponse* response) override;
+    grpc::Status PullSectors(grpc::ServerContext* context,
+                             const v1::PullSectorsRequest* request,
+                             grpc::ServerWriter<v1::PullSectorsResponse>* writer) override;
 
   private:
-    [[nodiscard]] grpc::Status send(const farm::SectorView& view, grpc::ServerWriter<v1::PullSectorsResponse>& writer);
+    [[nodiscard]] grpc::Status send(const farm::SectorView& view,
+                                    grpc::ServerWriter<v1::PullSectorsResponse>& writer);
     farm::Farm& farm_;
 };
 
 class CacheService final : public v1::Cache::Service {
   public:
     explicit CacheService(farm::Farm& farm) : farm_(farm) {}
-    grpc::Status GetCache(grpc::ServerContext* context, const v1::GetCacheRequest* request, v1::CacheState* response) override;
-    grpc::Status ClearCache(grpc::ServerContext* context, const v1::ClearCacheRequest* request, v1::CacheState* response) override;
+    grpc::Status GetCache(grpc::ServerContext* context,
+                          const v1::GetCacheRequest* request,
+                          v1::CacheState* response) override;
+    grpc::Status ClearCache(grpc::ServerContext* context,
+                            const v1::ClearCacheRequest* request,
+                            v1::CacheState* response) override;
 
   private:
     farm::Farm& farm_;

@@ -21,7 +21,11 @@ namespace drtv::trace {
 class MeshBvh {
   public:
     // For instances of up to this shape: the box is larger than the mesh by its margin.
-    MeshBvh(std::shared_ptr<const Device> device, std::shared_ptr<const map::Map> map, std::uint32_t mesh, const InstanceShape& shape, std::uint64_t revision);
+    MeshBvh(std::shared_ptr<const Device> device,
+            std::shared_ptr<const map::Map> map,
+            std::uint32_t mesh,
+            const InstanceShape& shape,
+            std::uint64_t revision);
     ~MeshBvh();
     MeshBvh(const MeshBvh&) = delete;
     MeshBvh& operator=(const MeshBvh&) = delete;
@@ -30,8 +34,12 @@ class MeshBvh {
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
     [[nodiscard]] const InstanceShape& shape() const { return shape_; }
     // Not one of a triangle set: there to widen the box.
-    [[nodiscard]] bool is_margin(std::uint32_t embree_geometry) const { return embree_geometry == sets_.size(); }
-    [[nodiscard]] const TriangleSet& set(std::uint32_t embree_geometry) const { return *sets_[embree_geometry]; }
+    [[nodiscard]] bool is_margin(std::uint32_t embree_geometry) const {
+        return embree_geometry == sets_.size();
+    }
+    [[nodiscard]] const TriangleSet& set(std::uint32_t embree_geometry) const {
+        return *sets_[embree_geometry];
+    }
 
   private:
     std::shared_ptr<const Device> device_;
@@ -47,8 +55,11 @@ class MeshShelf {
   public:
     // The number of the next map.
     [[nodiscard]] std::uint64_t next_revision();
-    // One that a scene still holds and that is good for the shape; nothing otherwise. A BVH keeps its whole map in memory: that of a map opened long ago is not handed out any more.
-    [[nodiscard]] std::shared_ptr<const MeshBvh> find(const map::Digest& mesh, const InstanceShape& shape, std::uint64_t revision);
+    // One that a scene still holds and that is good for the shape; nothing otherwise. A BVH keeps its whole
+    // map in memory: that of a map opened long ago is not handed out any more.
+    [[nodiscard]] std::shared_ptr<const MeshBvh> find(const map::Digest& mesh,
+                                                      const InstanceShape& shape,
+                                                      std::uint64_t revision);
     void keep(const map::Digest& mesh, const std::shared_ptr<const MeshBvh>& bvh);
 
   private:
@@ -61,11 +72,15 @@ class MeshShelf {
 class MapGeometry {
   public:
     // With a shelf, meshes that an earlier map had are taken from there.
-    MapGeometry(std::shared_ptr<const Device> device, std::shared_ptr<const map::Map> map, std::shared_ptr<MeshShelf> shelf = nullptr);
+    MapGeometry(std::shared_ptr<const Device> device,
+                std::shared_ptr<const map::Map> map,
+                std::shared_ptr<MeshShelf> shelf = nullptr);
 
     [[nodiscard]] std::shared_ptr<const MeshBvh> bvh_of(std::uint32_t mesh);
     // Nothing for an object that cannot be an instance.
-    [[nodiscard]] std::optional<InstanceShape> shape_of(const map::Object& object) const { return instance_shape(object.world_from_object, margin_m_); }
+    [[nodiscard]] std::optional<InstanceShape> shape_of(const map::Object& object) const {
+        return instance_shape(object.world_from_object, margin_m_);
+    }
     [[nodiscard]] const std::shared_ptr<const map::Map>& map() const { return map_; }
     [[nodiscard]] const std::shared_ptr<const Device>& device() const { return device_; }
 

@@ -19,34 +19,39 @@ namespace drtv::trace {
 
 class Scene;
 
-// A ray along an axis starts, and goes on, on the lattice to which kits are snapped. Of one that runs along the side of a box with the
-// larger coordinates Embree says that it leaves the box at once; what touches there may be turned, so that this is its larger side
-// as well, or be moved by rounding. So such rays are asked for some roundings to both sides of the line. This decides which triangles are
-// found, not where they are met.
+// A ray along an axis starts, and goes on, on the lattice to which kits are snapped. Of one that runs along
+// the side of a box with the larger coordinates Embree says that it leaves the box at once; what touches
+// there may be turned, so that this is its larger side as well, or be moved by rounding. So such rays are
+// asked for some roundings to both sides of the line. This decides which triangles are found, not where they
+// are met.
 struct Sides {
-    int count = 1;             // 1, 2 or 4: neighbours of the line to ask for
-    glm::vec3 step_m{0};       // from the line, along the axes to which it is parallel; otherwise 0
+    int count = 1;        // 1, 2 or 4: neighbours of the line to ask for
+    glm::vec3 step_m{0};  // from the line, along the axes to which it is parallel; otherwise 0
 
     explicit Sides(const Ray& ray) {
         constexpr float along_axis = 0x1p-20f;
         for (glm::length_t k = 0; k < 3; ++k) {
-            if (std::abs(ray.direction[k]) > along_axis) continue;
+            if (std::abs(ray.direction[k]) > along_axis)
+                continue;
             step_m[k] = (std::abs(ray.origin[k]) + 64) * 0x1p-22f;
             count *= 2;
         }
     }
     [[nodiscard]] glm::vec3 origin(const Ray& ray, int side) const {
-        if (count == 1) return ray.origin;
+        if (count == 1)
+            return ray.origin;
         glm::vec3 moved = ray.origin;
         for (glm::length_t k = 0, bit = 0; k < 3; ++k) {
-            if (step_m[k] > 0) moved[k] += (side >> bit++ & 1) == 0 ? step_m[k] : -step_m[k];
+            if (step_m[k] > 0)
+                moved[k] += (side >> bit++ & 1) == 0 ? step_m[k] : -step_m[k];
         }
         return moved;
     }
 };
 
 // Both are filled in place: a copy of what was just written number by number waits for all of it.
-inline void set_ray(RTCRay& r, const glm::vec3& origin, const glm::vec3& direction, float far_m, unsigned id = 0) {
+inline void set_ray(
+    RTCRay& r, const glm::vec3& origin, const glm::vec3& direction, float far_m, unsigned id = 0) {
     r.org_x = origin.x;
     r.org_y = origin.y;
     r.org_z = origin.z;
@@ -66,8 +71,8 @@ inline void set_ray(RTCRayHit& r, const glm::vec3& origin, const glm::vec3& dire
     r.hit.geomID = r.hit.primID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 }
 
-// Which triangle, in Embree's numbers: instance in the scene, triangle set of its mesh, triangle of the set. All three
-// follow the order of the content (TriangleSet), so that the smaller one does too.
+// Which triangle, in Embree's numbers: instance in the scene, triangle set of its mesh, triangle of the set.
+// All three follow the order of the content (TriangleSet), so that the smaller one does too.
 struct TriangleId {
     std::uint32_t instance = 0, set = 0, triangle = 0;
     auto operator<=>(const TriangleId&) const = default;
@@ -78,7 +83,8 @@ struct Crossing {
     Intersection at;
 };
 
-// The closest hit so far, or the end of the ray. Where Embree's own distance decides, the intersection is left for later.
+// The closest hit so far, or the end of the ray. Where Embree's own distance decides, the intersection is
+// left for later.
 struct Candidate {
     TriangleId id;
     const TriangleSet* set = nullptr;  // none: the end of the ray
@@ -90,11 +96,14 @@ struct Candidate {
 struct Query {
     RTCIntersectContext base;
     const Scene& scene;
-    std::span<const Ray> rays;  // in the world, by RTCRay::id: an instance's filter gets them in its own space
-    Candidate best;             // of `rays[0]`
+    std::span<const Ray>
+        rays;        // in the world, by RTCRay::id: an instance's filter gets them in its own space
+    Candidate best;  // of `rays[0]`
     std::vector<Crossing>* crossings = nullptr;  // collect every hit instead of the closest
 
-    Query(const Scene& asked, std::span<const Ray> asked_rays) : scene(asked), rays(asked_rays) { rtcInitIntersectContext(&base); }
+    Query(const Scene& asked, std::span<const Ray> asked_rays) : scene(asked), rays(asked_rays) {
+        rtcInitIntersectContext(&base);
+    }
 };
 
 }  // namespace drtv::trace

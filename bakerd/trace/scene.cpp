@@ -14,8 +14,8 @@ namespace drtv::trace {
 namespace {
 
 bool overlaps(const map::Bounds& bounds, const Region& region, float margin_m) {
-    return bounds.low.x <= region.high.x + margin_m && bounds.high.x >= region.low.x - margin_m && bounds.low.y <= region.high.y + margin_m &&
-           bounds.high.y >= region.low.y - margin_m;
+    return bounds.low.x <= region.high.x + margin_m && bounds.high.x >= region.low.x - margin_m &&
+           bounds.low.y <= region.high.y + margin_m && bounds.high.y >= region.low.y - margin_m;
 }
 
 bool mirrors(const glm::mat4x3& world_from_object) {
@@ -23,8 +23,9 @@ bool mirrors(const glm::mat4x3& world_from_object) {
     return glm::dot(glm::cross(x, y), z) < 0;
 }
 
-// Terrain and the like is cut to what lies within reach and put into world space: its memory follows the reach too, and
-// rays near it need no transform. It must depend on the object alone: a hit's last digits are not the same either way.
+// Terrain and the like is cut to what lies within reach and put into world space: its memory follows the
+// reach too, and rays near it need no transform. It must depend on the object alone: a hit's last digits are
+// not the same either way.
 bool is_large(const map::Bounds& bounds) {
     constexpr float side_m = 96;
     return std::max(bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y) > side_m;
@@ -58,7 +59,8 @@ std::shared_ptr<const Scene> Scene::build(MapGeometry& geometry, const Region& r
     const std::vector<map::Object>& objects = scene->map_->objects;
     for (std::uint32_t n = 0; n < objects.size(); ++n) {
         const map::Object& object = objects[n];
-        if (!overlaps(object.bounds, region, reach_m)) continue;
+        if (!overlaps(object.bounds, region, reach_m))
+            continue;
         scene->bounds_.extend(object.bounds.low);
         scene->bounds_.extend(object.bounds.high);
         if (is_large(object.bounds) || !geometry.shape_of(object)) {
@@ -66,12 +68,14 @@ std::shared_ptr<const Scene> Scene::build(MapGeometry& geometry, const Region& r
             continue;
         }
         std::shared_ptr<const MeshBvh>& bvh = by_mesh[object.mesh];
-        if (!bvh) bvh = geometry.bvh_of(object.mesh);
+        if (!bvh)
+            bvh = geometry.bvh_of(object.mesh);
         scene->add_instance(n, *bvh);
     }
     rtcCommitScene(scene->handle_);
     for (auto& bvh : by_mesh) {
-        if (bvh) scene->meshes_.push_back(std::move(bvh));
+        if (bvh)
+            scene->meshes_.push_back(std::move(bvh));
     }
     return scene;
 }
@@ -84,7 +88,8 @@ void Scene::add_instance(std::uint32_t object, const MeshBvh& bvh) {
     rtcCommitGeometry(instance);
     rtcAttachGeometryByID(handle_, instance, static_cast<unsigned>(instances_.size()));
     rtcReleaseGeometry(instance);
-    instances_.push_back({world_from_object, &bvh, object, map_->objects[object].role, mirrors(world_from_object)});
+    instances_.push_back(
+        {world_from_object, &bvh, object, map_->objects[object].role, mirrors(world_from_object)});
 }
 
 void Scene::add_in_world_space(std::uint32_t object, const Region& region, float reach_m) {
@@ -92,24 +97,32 @@ void Scene::add_in_world_space(std::uint32_t object, const Region& region, float
     const glm::dmat4x3 world_from_object(placed.world_from_object);
     const auto within_reach = [&](const map::Primitive& primitive, const glm::uvec3& triangle) {
         map::Bounds bounds;
-        for (glm::length_t k = 0; k < 3; ++k) bounds.extend(glm::vec3(world_from_object * glm::dvec4(primitive.positions[triangle[k]], 1)));
+        for (glm::length_t k = 0; k < 3; ++k)
+            bounds.extend(glm::vec3(world_from_object * glm::dvec4(primitive.positions[triangle[k]], 1)));
         return overlaps(bounds, region, reach_m);
     };
     for (auto& set : triangle_sets(*map_, map_->meshes[placed.mesh], within_reach)) {
         set->instance = static_cast<std::uint32_t>(instances_.size());
-        attach(device_->handle(), handle_, *set, static_cast<std::uint32_t>(map_->objects.size() + world_sets_.size()), placed.world_from_object);
+        attach(device_->handle(),
+               handle_,
+               *set,
+               static_cast<std::uint32_t>(map_->objects.size() + world_sets_.size()),
+               placed.world_from_object);
         world_sets_.push_back(std::move(set));
     }
-    instances_.push_back({placed.world_from_object, nullptr, object, placed.role, mirrors(placed.world_from_object)});
+    instances_.push_back(
+        {placed.world_from_object, nullptr, object, placed.role, mirrors(placed.world_from_object)});
 }
 
 const TriangleSet& Scene::set_of(std::uint32_t instance, std::uint32_t embree_geometry) const {
     const MeshBvh* mesh = instances_[instance].mesh;
-    return mesh != nullptr ? mesh->set(embree_geometry) : *world_sets_[embree_geometry - map_->objects.size()];
+    return mesh != nullptr ? mesh->set(embree_geometry)
+                           : *world_sets_[embree_geometry - map_->objects.size()];
 }
 
 Scene::~Scene() {
-    if (handle_ != nullptr) rtcReleaseScene(handle_);
+    if (handle_ != nullptr)
+        rtcReleaseScene(handle_);
 }
 
 std::optional<Hit> Scene::closest(const Ray& ray) const {
@@ -118,19 +131,35 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
     const Sides sides(ray);
     for (int side = 0; side < sides.count; ++side) {
         RTCRayHit r;
-        set_ray(r, sides.origin(ray, side), ray.direction, query.best.most_m + query_slack(ray, query.best.most_m));
+        set_ray(r,
+                sides.origin(ray, side),
+                ray.direction,
+                query.best.most_m + query_slack(ray, query.best.most_m));
         rtcIntersect1(handle_, &query.base, &r);
     }
-    if (query.best.set == nullptr) return std::nullopt;
+    if (query.best.set == nullptr)
+        return std::nullopt;
     const TriangleId& id = query.best.id;
     const TriangleSet& set = *query.best.set;
     const Instance& instance = instances_[id.instance];
-    const Intersection at = query.best.at ? *query.best.at : *intersect(ray, instance.world_from_object, corners_of(set, id.triangle));
+    const Intersection at = query.best.at
+                                ? *query.best.at
+                                : *intersect(ray, instance.world_from_object, corners_of(set, id.triangle));
     const bool front = meets_front(id.instance, at, ray);
-    const double double_area_m2 = glm::length(at.normal), towards = glm::dot(at.normal, glm::dvec3(ray.direction)) < 0 ? 1 : -1;
-    Hit hit{static_cast<float>(at.distance_m), id.instance, set.primitive_index, set.triangle_of(id.triangle), at.u, at.v, front,
-            glm::vec3(at.normal * (towards / double_area_m2)), static_cast<float>(double_area_m2), &set};
-    if (!front && !set.twins.empty() && set.twins[id.triangle].present()) turn_to_twin(set.twins[id.triangle], hit);
+    const double double_area_m2 = glm::length(at.normal),
+                 towards = glm::dot(at.normal, glm::dvec3(ray.direction)) < 0 ? 1 : -1;
+    Hit hit{static_cast<float>(at.distance_m),
+            id.instance,
+            set.primitive_index,
+            set.triangle_of(id.triangle),
+            at.u,
+            at.v,
+            front,
+            glm::vec3(at.normal * (towards / double_area_m2)),
+            static_cast<float>(double_area_m2),
+            &set};
+    if (!front && !set.twins.empty() && set.twins[id.triangle].present())
+        turn_to_twin(set.twins[id.triangle], hit);
     return hit;
 }
 
@@ -167,9 +196,13 @@ Ray beside(const Ray& ray) {
 
 Surface Scene::surface(const Hit& hit, float footprint_m) const {
     const map::Role role = instances_[hit.instance].role;
-    const auto of = [&](const map::Map& map, const map::Primitive& primitive) { return surface_at(map, primitive, role, hit.triangle, hit.u, hit.v, hit.front, hit.double_area_m2, footprint_m); };
+    const auto of = [&](const map::Map& map, const map::Primitive& primitive) {
+        return surface_at(
+            map, primitive, role, hit.triangle, hit.u, hit.v, hit.front, hit.double_area_m2, footprint_m);
+    };
     // What the hit knows already is not looked up again: in a large map that is far away in memory.
-    if (hit.set != nullptr) return of(*hit.set->map, *hit.set->primitive);
+    if (hit.set != nullptr)
+        return of(*hit.set->map, *hit.set->primitive);
     return of(*map_, map_->meshes[object_of(hit).mesh].primitives[hit.primitive]);
 }
 
@@ -178,10 +211,16 @@ void Scene::occluded(std::span<const Ray> rays, std::vector<bool>& answers) cons
     query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     thread_local std::vector<RTCRay> stream;
     stream.resize(rays.size());
-    for (std::size_t n = 0; n < rays.size(); ++n) set_ray(stream[n], rays[n].origin, rays[n].direction, rays[n].far_m + query_slack(rays[n], rays[n].far_m), static_cast<unsigned>(n));
+    for (std::size_t n = 0; n < rays.size(); ++n)
+        set_ray(stream[n],
+                rays[n].origin,
+                rays[n].direction,
+                rays[n].far_m + query_slack(rays[n], rays[n].far_m),
+                static_cast<unsigned>(n));
     rtcOccluded1M(handle_, &query.base, stream.data(), static_cast<unsigned>(stream.size()), sizeof(RTCRay));
     answers.clear();
-    for (std::size_t n = 0; n < rays.size(); ++n) answers.push_back(stream[n].tfar < 0 || (Sides(rays[n]).count > 1 && occluded(rays[n])));
+    for (std::size_t n = 0; n < rays.size(); ++n)
+        answers.push_back(stream[n].tfar < 0 || (Sides(rays[n]).count > 1 && occluded(rays[n])));
 }
 
 std::size_t Scene::crossings(const Ray& ray) const {
@@ -190,11 +229,14 @@ std::size_t Scene::crossings(const Ray& ray) const {
     std::size_t count = crossings.size();
     for (const Crossing& a : crossings) {
         const TriangleSet& set = set_of(a.id.instance, a.id.set);
-        if (set.twins.empty() || !set.twins[a.id.triangle].present()) continue;
+        if (set.twins.empty() || !set.twins[a.id.triangle].present())
+            continue;
         const TriangleSet::Twin& twin = set.twins[a.id.triangle];
         for (const Crossing& b : crossings) {
             const TriangleSet& other = set_of(b.id.instance, b.id.set);
-            if (a.id < b.id && a.id.instance == b.id.instance && other.primitive_index == twin.primitive && other.triangle_of(b.id.triangle) == twin.triangle) --count;
+            if (a.id < b.id && a.id.instance == b.id.instance && other.primitive_index == twin.primitive &&
+                other.triangle_of(b.id.triangle) == twin.triangle)
+                --count;
         }
     }
     return count;
@@ -207,25 +249,34 @@ bool Scene::occluded(const Ray& ray) const {
         RTCRay r;
         set_ray(r, sides.origin(ray, side), ray.direction, ray.far_m + query_slack(ray, ray.far_m));
         rtcOccluded1(handle_, &query.base, &r);
-        if (r.tfar < 0) return true;
+        if (r.tfar < 0)
+            return true;
     }
     return false;
 }
 
 void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
     hits.clear();
-    // The line's ends are constants: were they taken from the scene, its rounding would depend on far objects.
+    // The line's ends are constants: were they taken from the scene, its rounding would depend on far
+    // objects.
     const Ray line{glm::vec3(at, map::max_height_m), glm::vec3(0, 0, -1), 2 * map::max_height_m};
     for (const Crossing& crossing : all_crossings(line)) {
         const map::Object& object = map_->objects[object_index(crossing.id.instance)];
-        if (object.role == map::Role::vegetation) continue;
+        if (object.role == map::Role::vegetation)
+            continue;
         const TriangleSet& set = set_of(crossing.id.instance, crossing.id.set);
-        const std::optional<double> z_m = height_at(transformed(instances_[crossing.id.instance].world_from_object, corners_of(set, crossing.id.triangle)), at);
-        if (!z_m) continue;
-        const bool two_sided = is_two_sided(*set.material, object.role), front = meets_front(crossing.id.instance, crossing.at, line);
+        const std::optional<double> z_m =
+            height_at(transformed(instances_[crossing.id.instance].world_from_object,
+                                  corners_of(set, crossing.id.triangle)),
+                      at);
+        if (!z_m)
+            continue;
+        const bool two_sided = is_two_sided(*set.material, object.role),
+                   front = meets_front(crossing.id.instance, crossing.at, line);
         hits.push_back({static_cast<float>(*z_m), front || two_sided, !front || two_sided});
     }
-    std::stable_sort(hits.begin(), hits.end(), [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });
+    std::stable_sort(
+        hits.begin(), hits.end(), [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });
 }
 
 float Scene::distance_to_surface(const glm::vec3& point, float most_m) const {
@@ -243,10 +294,16 @@ float Scene::distance_to_surface(const glm::vec3& point, float most_m) const {
     const auto look = [](RTCPointQueryFunctionArguments* found) {
         auto& [scene, from, at, nearest_m] = *static_cast<Search*>(found->userPtr);
         std::uint32_t instance = found->context->instID[0];
-        if (found->context->instStackSize == 0) instance = scene.world_sets_[found->geomID - scene.map_->objects.size()]->instance;
-        else if (scene.instances_[instance].mesh->is_margin(found->geomID)) return false;
-        const auto distance_m = static_cast<float>(distance_to(transformed(scene.instances_[instance].world_from_object, corners_of(scene.set_of(instance, found->geomID), found->primID)), at));
-        if (!(distance_m < nearest_m)) return false;
+        if (found->context->instStackSize == 0)
+            instance = scene.world_sets_[found->geomID - scene.map_->objects.size()]->instance;
+        else if (scene.instances_[instance].mesh->is_margin(found->geomID))
+            return false;
+        const auto distance_m = static_cast<float>(
+            distance_to(transformed(scene.instances_[instance].world_from_object,
+                                    corners_of(scene.set_of(instance, found->geomID), found->primID)),
+                        at));
+        if (!(distance_m < nearest_m))
+            return false;
         nearest_m = distance_m;
         found->query->radius = distance_m + query_slack(from, distance_m);
         return true;
@@ -259,7 +316,8 @@ std::vector<map::Bounds> Scene::vegetation_bounds(const Region& region) const {
     std::vector<map::Bounds> found;
     for (const Instance& instance : instances_) {
         const map::Object& object = map_->objects[instance.object];
-        if (object.role == map::Role::vegetation && overlaps(object.bounds, region, 0)) found.push_back(object.bounds);
+        if (object.role == map::Role::vegetation && overlaps(object.bounds, region, 0))
+            found.push_back(object.bounds);
     }
     return found;
 }

@@ -1,5 +1,5 @@
-// The objects within reach of a square of the world, as something rays can be shot at. A query's answer depends
-// only on the triangles the ray can meet: not on what else is in the scene, the BVH, or the thread.
+// The objects within reach of a square of the world, as something rays can be shot at. A query's answer
+// depends only on the triangles the ray can meet: not on what else is in the scene, the BVH, or the thread.
 #pragma once
 
 #include "bakerd/map/map.h"
@@ -24,20 +24,20 @@ namespace drtv::trace {
 
 struct Crossing;  // query.h
 
-// A ray a hair's breadth beside this one. Embree's robust test gives an edge one sign for both its triangles, but rounds the
-// edges around a vertex each by itself: of rays aimed exactly at a vertex, some 10 in a million pass between its triangles. Where
-// light must not leak, a miss counts when this one misses too.
+// A ray a hair's breadth beside this one. Embree's robust test gives an edge one sign for both its triangles,
+// but rounds the edges around a vertex each by itself: of rays aimed exactly at a vertex, some 10 in a
+// million pass between its triangles. Where light must not leak, a miss counts when this one misses too.
 [[nodiscard]] Ray beside(const Ray& ray);
 
 struct Hit {
     float distance_m = 0;
-    std::uint32_t instance = 0;   // in the scene
-    std::uint32_t primitive = 0;  // of the object's mesh
-    std::uint32_t triangle = 0;   // of the primitive
-    float u = 0, v = 0;           // barycentric: weights of the second and third vertex
-    bool front = false;           // the ray met the counter-clockwise side
-    glm::vec3 normal{};           // unit, world, on the ray's side
-    float double_area_m2 = 0;     // twice the triangle's area in the world
+    std::uint32_t instance = 0;        // in the scene
+    std::uint32_t primitive = 0;       // of the object's mesh
+    std::uint32_t triangle = 0;        // of the primitive
+    float u = 0, v = 0;                // barycentric: weights of the second and third vertex
+    bool front = false;                // the ray met the counter-clockwise side
+    glm::vec3 normal{};                // unit, world, on the ray's side
+    float double_area_m2 = 0;          // twice the triangle's area in the world
     const TriangleSet* set = nullptr;  // of the triangle, where it was not found by its twin
 };
 
@@ -56,12 +56,15 @@ struct Region {
 class Scene {
   public:
     // All objects whose bounds come within `reach_m` of the region.
-    [[nodiscard]] static std::shared_ptr<const Scene> build(MapGeometry& geometry, const Region& region, float reach_m);
+    [[nodiscard]] static std::shared_ptr<const Scene> build(MapGeometry& geometry,
+                                                            const Region& region,
+                                                            float reach_m);
     ~Scene();
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
-    // The closest hit. What alpha takes away lets the ray through; ties go to the object of the smaller digest.
+    // The closest hit. What alpha takes away lets the ray through; ties go to the object of the smaller
+    // digest.
     [[nodiscard]] std::optional<Hit> closest(const Ray& ray) const;
     // Textures are averaged over a width of `footprint_m`.
     [[nodiscard]] Surface surface(const Hit& hit, float footprint_m) const;
@@ -71,7 +74,8 @@ class Scene {
     // How many surfaces the ray crosses; two that are twins (triangle_set.h) are one.
     [[nodiscard]] std::size_t crossings(const Ray& ray) const;
 
-    // All crossings of the vertical line at (x, y) with static objects, from the top down; `hits` is replaced.
+    // All crossings of the vertical line at (x, y) with static objects, from the top down; `hits` is
+    // replaced.
     void column(glm::vec2 at, std::vector<ColumnHit>& hits) const;
 
     // To the nearest surface of any kind, at most `most_m`; what alpha takes away counts as there.
@@ -82,11 +86,17 @@ class Scene {
 
     [[nodiscard]] const map::Bounds& bounds() const { return bounds_; }
     [[nodiscard]] std::size_t object_count() const { return instances_.size(); }
-    [[nodiscard]] std::uint32_t object_index(std::uint32_t instance) const { return instances_[instance].object; }
-    [[nodiscard]] const map::Object& object_of(const Hit& hit) const { return map_->objects[object_index(hit.instance)]; }
+    [[nodiscard]] std::uint32_t object_index(std::uint32_t instance) const {
+        return instances_[instance].object;
+    }
+    [[nodiscard]] const map::Object& object_of(const Hit& hit) const {
+        return map_->objects[object_index(hit.instance)];
+    }
     [[nodiscard]] const map::Map& map() const { return *map_; }
 
-    [[nodiscard]] const glm::mat4x3& world_from_object(std::uint32_t instance) const { return instances_[instance].world_from_object; }
+    [[nodiscard]] const glm::mat4x3& world_from_object(std::uint32_t instance) const {
+        return instances_[instance].world_from_object;
+    }
 
     // Embree's scene, for benchmarks that measure what it alone costs.
     [[nodiscard]] RTCSceneTy* embree_scene() const { return handle_; }
@@ -111,7 +121,8 @@ class Scene {
     std::shared_ptr<const map::Map> map_;
     std::vector<std::shared_ptr<const MeshBvh>> meshes_;  // keeps the instanced BVHs alive
     std::vector<Instance> instances_;                     // in the order of the map's objects
-    // Of large objects, and of those that cannot be instances, what lies within reach, in world space. Their geometry ids follow those of all instances.
+    // Of large objects, and of those that cannot be instances, what lies within reach, in world space. Their
+    // geometry ids follow those of all instances.
     std::vector<std::unique_ptr<TriangleSet>> world_sets_;
     map::Bounds bounds_;
     RTCSceneTy* handle_ = nullptr;

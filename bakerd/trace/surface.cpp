@@ -26,33 +26,56 @@ glm::vec2 viewed(const map::TextureView& view, const glm::vec2& uv) {
     return {glm::dot(view.u_from_uv, row), glm::dot(view.v_from_uv, row)};
 }
 
-// A texel is never wider than this part of a triangle. What a picture holds beside the part that a surface wears must not
-// bleed in: with texels as wide as the footprint alone, Sponza came out 1.3 % too dark.
+// A texel is never wider than this part of a triangle. What a picture holds beside the part that a surface
+// wears must not bleed in: with texels as wide as the footprint alone, Sponza came out 1.3 % too dark.
 constexpr float texels_a_triangle = 16;
 
-// The mip level at which one texel is as wide as the footprint, from the texels and the square metres of the triangle.
-std::uint32_t mip_level(const map::Texture& texture, const std::array<glm::vec2, 3>& uvs, float double_area_m2, float footprint_m) {
+// The mip level at which one texel is as wide as the footprint, from the texels and the square metres of the
+// triangle.
+std::uint32_t mip_level(const map::Texture& texture,
+                        const std::array<glm::vec2, 3>& uvs,
+                        float double_area_m2,
+                        float footprint_m) {
     const glm::vec2 a = uvs[1] - uvs[0], b = uvs[2] - uvs[0];
-    const float double_texels = std::abs(a.x * b.y - a.y * b.x) * static_cast<float>(texture.width) * static_cast<float>(texture.height);
-    const float ratio = std::min(footprint_m * footprint_m / double_area_m2, 1 / (2 * texels_a_triangle * texels_a_triangle)) * double_texels;
-    if (!(ratio > 1)) return 0;
+    const float double_texels = std::abs(a.x * b.y - a.y * b.x) * static_cast<float>(texture.width) *
+                                static_cast<float>(texture.height);
+    const float ratio = std::min(footprint_m * footprint_m / double_area_m2,
+                                 1 / (2 * texels_a_triangle * texels_a_triangle)) *
+                        double_texels;
+    if (!(ratio > 1))
+        return 0;
     return ((std::bit_cast<std::uint32_t>(ratio) >> 23) - 127 + 1) / 2;  // half the logarithm, rounded
 }
 
-glm::vec3 filtered(const map::Map& map, const map::TextureView& view, const std::vector<glm::vec2>& uvs, const glm::uvec3& t, float u, float v, float double_area_m2, float footprint_m) {
+glm::vec3 filtered(const map::Map& map,
+                   const map::TextureView& view,
+                   const std::vector<glm::vec2>& uvs,
+                   const glm::uvec3& t,
+                   float u,
+                   float v,
+                   float double_area_m2,
+                   float footprint_m) {
     const map::Texture& texture = map.textures[view.texture];
-    const std::array<glm::vec2, 3> corners = {viewed(view, uvs[t.x]), viewed(view, uvs[t.y]), viewed(view, uvs[t.z])};
+    const std::array<glm::vec2, 3> corners = {
+        viewed(view, uvs[t.x]), viewed(view, uvs[t.y]), viewed(view, uvs[t.z])};
     const glm::vec2 at = corners[0] * (1 - u - v) + corners[1] * u + corners[2] * v;
     return map::sample_filtered(texture, at, mip_level(texture, corners, double_area_m2, footprint_m));
 }
 
-bool is_leaf(const map::Material& material, map::Role role) { return role == map::Role::vegetation && (material.double_sided || material.alpha_mode != map::AlphaMode::opaque); }
+bool is_leaf(const map::Material& material, map::Role role) {
+    return role == map::Role::vegetation &&
+           (material.double_sided || material.alpha_mode != map::AlphaMode::opaque);
+}
 
-float brightest(const glm::vec3& colour) { return std::max({colour.x, colour.y, colour.z}); }
+float brightest(const glm::vec3& colour) {
+    return std::max({colour.x, colour.y, colour.z});
+}
 
 // In [0, 1), from the point's bits (finaliser of SplitMix64).
 float coin_at(std::uint32_t triangle, float u, float v) {
-    std::uint64_t x = (std::uint64_t{std::bit_cast<std::uint32_t>(u)} << 32 | std::bit_cast<std::uint32_t>(v)) + 0x9E3779B97F4A7C15u * (std::uint64_t{triangle} + 1);
+    std::uint64_t x =
+        (std::uint64_t{std::bit_cast<std::uint32_t>(u)} << 32 | std::bit_cast<std::uint32_t>(v)) +
+        0x9E3779B97F4A7C15u * (std::uint64_t{triangle} + 1);
     x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
     x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
     return static_cast<float>((x ^ (x >> 31)) >> 40) * 0x1p-24f;
@@ -60,28 +83,37 @@ float coin_at(std::uint32_t triangle, float u, float v) {
 
 }  // namespace
 
-float alpha_at(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v) {
+float alpha_at(
+    const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v) {
     const map::Material& material = map.materials[primitive.material];
     const glm::uvec3& t = primitive.triangles[triangle];
     float alpha = material.base_colour.w;
-    if (!primitive.colours.empty()) alpha *= interpolate(primitive.colours, t, u, v).w;
-    if (material.base_texture.present()) alpha *= map::sample_alpha(map.textures[material.base_texture.texture], viewed(material.base_texture, interpolate(primitive.uvs, t, u, v)));
+    if (!primitive.colours.empty())
+        alpha *= interpolate(primitive.colours, t, u, v).w;
+    if (material.base_texture.present())
+        alpha *= map::sample_alpha(map.textures[material.base_texture.texture],
+                                   viewed(material.base_texture, interpolate(primitive.uvs, t, u, v)));
     return alpha;
 }
 
-bool is_there(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v) {
+bool is_there(
+    const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v) {
     const map::Material& material = map.materials[primitive.material];
     switch (material.alpha_mode) {
-        case map::AlphaMode::opaque: return true;
-        case map::AlphaMode::mask: return alpha_at(map, primitive, triangle, u, v) >= material.alpha_cutoff;
-        case map::AlphaMode::blend: return alpha_at(map, primitive, triangle, u, v) > coin_at(triangle, u, v);
+        case map::AlphaMode::opaque:
+            return true;
+        case map::AlphaMode::mask:
+            return alpha_at(map, primitive, triangle, u, v) >= material.alpha_cutoff;
+        case map::AlphaMode::blend:
+            return alpha_at(map, primitive, triangle, u, v) > coin_at(triangle, u, v);
     }
     return true;
 }
 
 Presence presence_of(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle) {
     const map::Material& material = map.materials[primitive.material];
-    if (material.alpha_mode == map::AlphaMode::opaque) return Presence::whole;
+    if (material.alpha_mode == map::AlphaMode::opaque)
+        return Presence::whole;
     const glm::uvec3& t = primitive.triangles[triangle];
     float low = material.base_colour.w, high = low;
     if (!primitive.colours.empty()) {
@@ -90,17 +122,23 @@ Presence presence_of(const map::Map& map, const map::Primitive& primitive, std::
         high *= std::max({a, b, c});
     }
     if (material.base_texture.present()) {
-        const glm::vec2 a = viewed(material.base_texture, primitive.uvs[t.x]), b = viewed(material.base_texture, primitive.uvs[t.y]), c = viewed(material.base_texture, primitive.uvs[t.z]);
-        const map::AlphaRange range = map::alpha_range(map.textures[material.base_texture.texture], glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c));
+        const glm::vec2 a = viewed(material.base_texture, primitive.uvs[t.x]),
+                        b = viewed(material.base_texture, primitive.uvs[t.y]),
+                        c = viewed(material.base_texture, primitive.uvs[t.z]);
+        const map::AlphaRange range = map::alpha_range(map.textures[material.base_texture.texture],
+                                                       glm::min(glm::min(a, b), c),
+                                                       glm::max(glm::max(a, b), c));
         low *= static_cast<float>(range.low) / 255.0f;
         high *= static_cast<float>(range.high) / 255.0f;
     }
     constexpr float rounding = 1e-5f;  // of interpolated alphas
     if (material.alpha_mode == map::AlphaMode::mask) {
-        if (low - rounding >= material.alpha_cutoff) return Presence::whole;
+        if (low - rounding >= material.alpha_cutoff)
+            return Presence::whole;
         return high + rounding < material.alpha_cutoff ? Presence::nowhere : Presence::mixed;
     }
-    if (low + rounding >= 1) return Presence::whole;
+    if (low + rounding >= 1)
+        return Presence::whole;
     return high <= 0 ? Presence::nowhere : Presence::mixed;
 }
 
@@ -110,26 +148,35 @@ float most_scattered(const map::Map& map) {
     float most = least_scattered;
     for (const map::Object& object : map.objects) {
         const bool vegetation = object.role == map::Role::vegetation;
-        if (!seen.insert({object.mesh, vegetation}).second) continue;
+        if (!seen.insert({object.mesh, vegetation}).second)
+            continue;
         for (const map::Primitive& primitive : map.meshes[object.mesh].primitives) {
             const map::Material& material = map.materials[primitive.material];
             const auto scattered = [&](const glm::vec3& colour) {
                 const float albedo = std::min(brightest(colour), map::max_albedo);
-                if (material.transmission > 0) return albedo * (1 - material.transmission) + std::min(brightest(material.transmission_colour) * material.transmission, map::max_albedo);
-                return is_leaf(material, object.role) ? std::min(albedo * (1 + leaf_transmission), map::max_albedo) : albedo;
+                if (material.transmission > 0)
+                    return albedo * (1 - material.transmission) +
+                           std::min(brightest(material.transmission_colour) * material.transmission,
+                                    map::max_albedo);
+                return is_leaf(material, object.role)
+                           ? std::min(albedo * (1 + leaf_transmission), map::max_albedo)
+                           : albedo;
             };
             glm::vec3 colour(material.base_colour);
             if (!primitive.colours.empty()) {
                 glm::vec3 largest(0);
-                for (const glm::vec4& vertex : primitive.colours) largest = glm::max(largest, glm::vec3(vertex));
+                for (const glm::vec4& vertex : primitive.colours)
+                    largest = glm::max(largest, glm::vec3(vertex));
                 colour *= largest;
             }
             // Textures are looked at only where they matter: their colours are 1 at most.
-            if (scattered(colour) <= most) continue;
+            if (scattered(colour) <= most)
+                continue;
             if (material.base_texture.present()) {
                 const std::uint32_t texture = material.base_texture.texture;
                 const auto [entry, added] = of_textures.try_emplace(texture);
-                if (added) entry->second = map::brightest_of_all(map.textures[texture]);
+                if (added)
+                    entry->second = map::brightest_of_all(map.textures[texture]);
                 colour *= entry->second;
             }
             most = std::max(most, scattered(colour));
@@ -138,20 +185,45 @@ float most_scattered(const map::Map& map) {
     return most;
 }
 
-glm::vec3 emission_at(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v, float double_area_m2, float footprint_m) {
+glm::vec3 emission_at(const map::Map& map,
+                      const map::Primitive& primitive,
+                      std::uint32_t triangle,
+                      float u,
+                      float v,
+                      float double_area_m2,
+                      float footprint_m) {
     const map::Material& material = map.materials[primitive.material];
-    if (!material.emission_texture.present()) return material.emission;
-    return material.emission * filtered(map, material.emission_texture, primitive.emission_uvs, primitive.triangles[triangle], u, v, double_area_m2, footprint_m);
+    if (!material.emission_texture.present())
+        return material.emission;
+    return material.emission * filtered(map,
+                                        material.emission_texture,
+                                        primitive.emission_uvs,
+                                        primitive.triangles[triangle],
+                                        u,
+                                        v,
+                                        double_area_m2,
+                                        footprint_m);
 }
 
-Surface surface_at(const map::Map& map, const map::Primitive& primitive, map::Role role, std::uint32_t triangle, float u, float v, bool front, float double_area_m2, float footprint_m) {
+Surface surface_at(const map::Map& map,
+                   const map::Primitive& primitive,
+                   map::Role role,
+                   std::uint32_t triangle,
+                   float u,
+                   float v,
+                   bool front,
+                   float double_area_m2,
+                   float footprint_m) {
     const map::Material& material = map.materials[primitive.material];
-    if (!front && !is_two_sided(material, role)) return {true, glm::vec3(0), glm::vec3(0), glm::vec3(0)};
+    if (!front && !is_two_sided(material, role))
+        return {true, glm::vec3(0), glm::vec3(0), glm::vec3(0)};
 
     const glm::uvec3& t = primitive.triangles[triangle];
     glm::vec3 colour(material.base_colour);
-    if (!primitive.colours.empty()) colour *= glm::vec3(interpolate(primitive.colours, t, u, v));
-    if (material.base_texture.present()) colour *= filtered(map, material.base_texture, primitive.uvs, t, u, v, double_area_m2, footprint_m);
+    if (!primitive.colours.empty())
+        colour *= glm::vec3(interpolate(primitive.colours, t, u, v));
+    if (material.base_texture.present())
+        colour *= filtered(map, material.base_texture, primitive.uvs, t, u, v, double_area_m2, footprint_m);
     Surface surface;
     surface.albedo = glm::clamp(colour, 0.0f, map::max_albedo);
     if (material.transmission > 0) {
@@ -162,11 +234,13 @@ Surface surface_at(const map::Map& map, const map::Primitive& primitive, map::Ro
     }
     const glm::vec3 total = surface.albedo + surface.transmitted;
     for (glm::length_t k = 0; k < 3; ++k) {
-        if (total[k] <= map::max_albedo) continue;
+        if (total[k] <= map::max_albedo)
+            continue;
         surface.albedo[k] *= map::max_albedo / total[k];
         surface.transmitted[k] *= map::max_albedo / total[k];
     }
-    if (material.emission != glm::vec3(0) && (front || material.double_sided)) surface.emission = emission_at(map, primitive, triangle, u, v, double_area_m2, footprint_m);
+    if (material.emission != glm::vec3(0) && (front || material.double_sided))
+        surface.emission = emission_at(map, primitive, triangle, u, v, double_area_m2, footprint_m);
     return surface;
 }
 

@@ -15,35 +15,57 @@ struct Surface {
     glm::vec3 emission{};     // radiance of the side that was hit, nits
 };
 
-// Vegetation whose material is thin (double-sided, or cut out by alpha) and says nothing of transmission lets through
-// this share of what it sends back: leaves do about that much in visible light.
+// Vegetation whose material is thin (double-sided, or cut out by alpha) and says nothing of transmission lets
+// through this share of what it sends back: leaves do about that much in visible light.
 inline constexpr float leaf_transmission = 0.5f;
 
 // Leaves reflect on both sides, whatever the exporter says, and what lets light through has no blind side.
-[[nodiscard]] inline bool is_two_sided(const map::Material& material, map::Role role) { return role == map::Role::vegetation || material.double_sided || material.transmission > 0; }
+[[nodiscard]] inline bool is_two_sided(const map::Material& material, map::Role role) {
+    return role == map::Role::vegetation || material.double_sided || material.transmission > 0;
+}
 
 // Barycentric u, v weigh the triangle's second and third vertex.
-[[nodiscard]] float alpha_at(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
+[[nodiscard]] float alpha_at(
+    const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
 
-// Whether the surface is there: opaque ones are, masked ones by their cutoff, blended ones with the probability of
-// their alpha, by a hash of the point: at another point the coin falls anew, at the same one never.
-[[nodiscard]] bool is_there(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
+// Whether the surface is there: opaque ones are, masked ones by their cutoff, blended ones with the
+// probability of their alpha, by a hash of the point: at another point the coin falls anew, at the same one
+// never.
+[[nodiscard]] bool is_there(
+    const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
 
 enum class Presence : std::uint8_t { nowhere, mixed, whole };
 
 // Where on the triangle `is_there` holds; mixed when in doubt.
-[[nodiscard]] Presence presence_of(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle);
+[[nodiscard]] Presence presence_of(const map::Map& map,
+                                   const map::Primitive& primitive,
+                                   std::uint32_t triangle);
 
-// `double_area_m2` is twice the triangle's area in the world, `footprint_m` the width over which textures are averaged.
-[[nodiscard]] Surface surface_at(const map::Map& map, const map::Primitive& primitive, map::Role role, std::uint32_t triangle, float u, float v, bool front, float double_area_m2,
+// `double_area_m2` is twice the triangle's area in the world, `footprint_m` the width over which textures are
+// averaged.
+[[nodiscard]] Surface surface_at(const map::Map& map,
+                                 const map::Primitive& primitive,
+                                 map::Role role,
+                                 std::uint32_t triangle,
+                                 float u,
+                                 float v,
+                                 bool front,
+                                 float double_area_m2,
                                  float footprint_m);
 
-// A bound on the share of light that any surface of the map's objects passes on, to both sides together and in whichever channels are most: no step of a path
-// (bake::scatter) multiplies what it brings by more. Below 1, and never 0: of a black map least_scattered.
+// A bound on the share of light that any surface of the map's objects passes on, to both sides together and
+// in whichever channels are most: no step of a path (bake::scatter) multiplies what it brings by more. Below
+// 1, and never 0: of a black map least_scattered.
 inline constexpr float least_scattered = 1 / 16.0f;
 [[nodiscard]] float most_scattered(const map::Map& map);
 
 // Radiance of the triangle's front at a point, nits; as surface_at has it.
-[[nodiscard]] glm::vec3 emission_at(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v, float double_area_m2, float footprint_m);
+[[nodiscard]] glm::vec3 emission_at(const map::Map& map,
+                                    const map::Primitive& primitive,
+                                    std::uint32_t triangle,
+                                    float u,
+                                    float v,
+                                    float double_area_m2,
+                                    float footprint_m);
 
 }  // namespace drtv::trace

@@ -14,15 +14,20 @@ namespace {
 // x, y, z and 0, on which the compiler computes at once. A sum of three takes them in the order (x + y) + z.
 using Double4 = double __attribute__((vector_size(32)));
 
-Double4 four(const glm::vec3& v) { return Double4{double{v.x}, double{v.y}, double{v.z}, 0}; }
+Double4 four(const glm::vec3& v) {
+    return Double4{double{v.x}, double{v.y}, double{v.z}, 0};
+}
 
 struct WorldCorners {
     Double4 a, b, c;
 };
 
 WorldCorners in_world(const glm::mat4x3& world_from_object, const ObjectTriangle& triangle) {
-    const Double4 x = four(world_from_object[0]), y = four(world_from_object[1]), z = four(world_from_object[2]), origin = four(world_from_object[3]);
-    const auto corner = [&](const glm::vec3& p) { return (x * double{p.x} + y * double{p.y}) + (z * double{p.z} + origin); };
+    const Double4 x = four(world_from_object[0]), y = four(world_from_object[1]),
+                  z = four(world_from_object[2]), origin = four(world_from_object[3]);
+    const auto corner = [&](const glm::vec3& p) {
+        return (x * double{p.x} + y * double{p.y}) + (z * double{p.z} + origin);
+    };
     return {corner(triangle.a), corner(triangle.b), corner(triangle.c)};
 }
 
@@ -33,15 +38,20 @@ Double4 cross(const Double4& a, const Double4& b) {
 
 // The sums of the components of each.
 Double4 sums(const Double4& p, const Double4& q, const Double4& r, const Double4& s) {
-    const Double4 of_p_and_q = __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
-    const Double4 of_r_and_s = __builtin_shufflevector(r, s, 0, 4, 2, 6) + __builtin_shufflevector(r, s, 1, 5, 3, 7);
-    return __builtin_shufflevector(of_p_and_q, of_r_and_s, 0, 1, 4, 5) + __builtin_shufflevector(of_p_and_q, of_r_and_s, 2, 3, 6, 7);
+    const Double4 of_p_and_q =
+        __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
+    const Double4 of_r_and_s =
+        __builtin_shufflevector(r, s, 0, 4, 2, 6) + __builtin_shufflevector(r, s, 1, 5, 3, 7);
+    return __builtin_shufflevector(of_p_and_q, of_r_and_s, 0, 1, 4, 5) +
+           __builtin_shufflevector(of_p_and_q, of_r_and_s, 2, 3, 6, 7);
 }
 
 // The square of a cosine to the normal.
 constexpr double flat_grazing = 0x1p-20;
 
-double square(double x) { return x * x; }
+double square(double x) {
+    return x * x;
+}
 
 }  // namespace
 
@@ -51,13 +61,17 @@ Triangle transformed(const glm::mat4x3& world_from_object, const ObjectTriangle&
     return {three(corners.a), three(corners.b), three(corners.c)};
 }
 
-std::optional<Intersection> intersect(const Ray& ray, const glm::mat4x3& world_from_object, const ObjectTriangle& triangle) {
+std::optional<Intersection> intersect(const Ray& ray,
+                                      const glm::mat4x3& world_from_object,
+                                      const ObjectTriangle& triangle) {
     const WorldCorners corners = in_world(world_from_object, triangle);
-    const Double4 direction = four(ray.direction), a = corners.a - four(ray.origin), ab = corners.b - corners.a, ac = corners.c - corners.a;
+    const Double4 direction = four(ray.direction), a = corners.a - four(ray.origin),
+                  ab = corners.b - corners.a, ac = corners.c - corners.a;
     const Double4 normal = cross(ab, ac), moment = cross(a, direction);
     const Double4 products = sums(normal * direction, normal * a, ac * moment, ab * moment);
     const double facing = products[0];
-    if (facing == 0) return std::nullopt;
+    if (facing == 0)
+        return std::nullopt;
     const Double4 quotients = products / facing;
     const double u = std::clamp(quotients[2], 0.0, 1.0), v = std::clamp(-quotients[3], 0.0, 1.0 - u);
 
@@ -70,22 +84,32 @@ std::optional<Intersection> intersect(const Ray& ray, const glm::mat4x3& world_f
         // Beside the triangle its plane may be anywhere: not beyond what the corners span.
         const Double4 along = sums(a * direction, ab * direction, ac * direction, a);
         const double of_a_m = along[0], of_b_m = of_a_m + along[1], of_c_m = of_a_m + along[2];
-        found.distance_m = std::max(std::clamp(quotients[1], std::min({of_a_m, of_b_m, of_c_m}), std::max({of_a_m, of_b_m, of_c_m})), 0.0);
+        found.distance_m = std::max(
+            std::clamp(quotients[1], std::min({of_a_m, of_b_m, of_c_m}), std::max({of_a_m, of_b_m, of_c_m})),
+            0.0);
     }
     return found;
 }
 
-float order_of(const Intersection& at, const Ray& ray, const glm::mat4x3& world_from_space, const ObjectTriangle& triangle) {
+float order_of(const Intersection& at,
+               const Ray& ray,
+               const glm::mat4x3& world_from_space,
+               const ObjectTriangle& triangle) {
     const double slack_m = static_cast<double>(query_slack(ray, static_cast<float>(at.distance_m)));
     const glm::dmat3 space_from_world = glm::inverse(glm::dmat3(glm::mat3(world_from_space)));
     const glm::dvec3 a(triangle.a), b(triangle.b), c(triangle.c), normal = glm::abs(glm::cross(b - a, c - a));
-    const double facing = std::abs(glm::dot(glm::cross(b - a, c - a), space_from_world * glm::dvec3(ray.direction)));
-    // Along each axis of the space the transform rounds coordinates of the world, and the test those of the corners.
-    const glm::dvec3 translation = glm::abs(glm::dvec3(world_from_space[3])), corners = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
-    const double world_m = static_cast<double>(coordinate_m(ray)) + at.distance_m + std::max({translation.x, translation.y, translation.z});
+    const double facing =
+        std::abs(glm::dot(glm::cross(b - a, c - a), space_from_world * glm::dvec3(ray.direction)));
+    // Along each axis of the space the transform rounds coordinates of the world, and the test those of the
+    // corners.
+    const glm::dvec3 translation = glm::abs(glm::dvec3(world_from_space[3])),
+                     corners = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
+    const double world_m = static_cast<double>(coordinate_m(ray)) + at.distance_m +
+                           std::max({translation.x, translation.y, translation.z});
     double error = 0;
     for (glm::length_t k = 0; k < 3; ++k) {
-        const double row = std::abs(space_from_world[0][k]) + std::abs(space_from_world[1][k]) + std::abs(space_from_world[2][k]);
+        const double row = std::abs(space_from_world[0][k]) + std::abs(space_from_world[1][k]) +
+                           std::abs(space_from_world[2][k]);
         error += normal[k] * (world_m * row + corners[k] + glm::distance(a, b) + glm::distance(b, c));
     }
     const double error_m = error * static_cast<double>(embree_rounding) / facing;
@@ -95,7 +119,8 @@ float order_of(const Intersection& at, const Ray& ray, const glm::mat4x3& world_
 std::optional<double> height_at(const Triangle& triangle, glm::vec2 at) {
     const auto& [a, b, c] = triangle;
     const glm::dvec3 normal = glm::cross(b - a, c - a);
-    if (std::abs(normal.z) <= 1e-6 * glm::length(normal)) return std::nullopt;
+    if (std::abs(normal.z) <= 1e-6 * glm::length(normal))
+        return std::nullopt;
     const double z_m = a.z - (normal.x * (double{at.x} - a.x) + normal.y * (double{at.y} - a.y)) / normal.z;
     return std::clamp(z_m, std::min({a.z, b.z, c.z}), std::max({a.z, b.z, c.z}));
 }
@@ -104,14 +129,21 @@ std::optional<double> height_at(const Triangle& triangle, glm::vec2 at) {
 double distance_to(const Triangle& triangle, const glm::dvec3& point) {
     const auto& [a, b, c] = triangle;
     const glm::dvec3 ab = b - a, ac = c - a, ap = point - a, bp = point - b, cp = point - c;
-    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp), d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-    if (d1 <= 0 && d2 <= 0) return glm::length(ap);
-    if (d3 >= 0 && d4 <= d3) return glm::length(bp);
-    if (d6 >= 0 && d5 <= d6) return glm::length(cp);
+    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp),
+                 d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    if (d1 <= 0 && d2 <= 0)
+        return glm::length(ap);
+    if (d3 >= 0 && d4 <= d3)
+        return glm::length(bp);
+    if (d6 >= 0 && d5 <= d6)
+        return glm::length(cp);
     const double of_a = d3 * d6 - d5 * d4, of_b = d5 * d2 - d1 * d6, of_c = d1 * d4 - d3 * d2;
-    if (of_c <= 0 && d1 >= 0 && d3 <= 0) return glm::length(ap - ab * (d1 / (d1 - d3)));
-    if (of_b <= 0 && d2 >= 0 && d6 <= 0) return glm::length(ap - ac * (d2 / (d2 - d6)));
-    if (of_a <= 0 && d4 >= d3 && d5 >= d6) return glm::length(bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))));
+    if (of_c <= 0 && d1 >= 0 && d3 <= 0)
+        return glm::length(ap - ab * (d1 / (d1 - d3)));
+    if (of_b <= 0 && d2 >= 0 && d6 <= 0)
+        return glm::length(ap - ac * (d2 / (d2 - d6)));
+    if (of_a <= 0 && d4 >= d3 && d5 >= d6)
+        return glm::length(bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))));
     return glm::length(ap - (ab * of_b + ac * of_c) / (of_a + of_b + of_c));
 }
 

@@ -16,20 +16,21 @@ struct RTCSceneTy;
 
 namespace drtv::trace {
 
-// Some triangles of one primitive, in its order: one Embree geometry. What is nowhere there (alpha) is in no set.
+// Some triangles of one primitive, in its order: one Embree geometry. What is nowhere there (alpha) is in no
+// set.
 struct TriangleSet {
     const map::Map* map = nullptr;
     const map::Primitive* primitive = nullptr;
     const map::Material* material = nullptr;
-    std::uint32_t primitive_index = 0;      // in its mesh
-    bool mixed = false;                     // there in parts: alpha is looked at, hit by hit
-    std::uint32_t instance = UINT32_MAX;    // in its scene; of a set in world space alone
-    float spread = 1;                       // of its instances, at most (InstanceShape)
+    std::uint32_t primitive_index = 0;    // in its mesh
+    bool mixed = false;                   // there in parts: alpha is looked at, hit by hit
+    std::uint32_t instance = UINT32_MAX;  // in its scene; of a set in world space alone
+    float spread = 1;                     // of its instances, at most (InstanceShape)
     // Of its triangles, in the space of Embree's scene; once attached.
     float longest_edge = 0, farthest_coordinate = 0;
-    std::vector<std::uint32_t> triangles;   // of the primitive; empty: all of them, in order
-    // Of a one-sided set, by its triangle: the one of the same mesh that has the same corners and looks the other way.
-    // Thin things are often modelled so. Empty where there are none at all.
+    std::vector<std::uint32_t> triangles;  // of the primitive; empty: all of them, in order
+    // Of a one-sided set, by its triangle: the one of the same mesh that has the same corners and looks the
+    // other way. Thin things are often modelled so. Empty where there are none at all.
     struct Twin {
         std::uint32_t primitive = UINT32_MAX, triangle = 0;
         std::uint8_t first = 0;  // the twin's corner that is this one's first
@@ -37,8 +38,12 @@ struct TriangleSet {
     };
     std::vector<Twin> twins;
 
-    [[nodiscard]] std::size_t size() const { return triangles.empty() ? primitive->triangles.size() : triangles.size(); }
-    [[nodiscard]] std::uint32_t triangle_of(std::uint32_t n) const { return triangles.empty() ? n : triangles[n]; }
+    [[nodiscard]] std::size_t size() const {
+        return triangles.empty() ? primitive->triangles.size() : triangles.size();
+    }
+    [[nodiscard]] std::uint32_t triangle_of(std::uint32_t n) const {
+        return triangles.empty() ? n : triangles[n];
+    }
 };
 
 [[nodiscard]] inline ObjectTriangle corners_of(const TriangleSet& set, std::uint32_t triangle_of_set) {
@@ -47,12 +52,18 @@ struct TriangleSet {
     return {p[t.x], p[t.y], p[t.z]};
 }
 
-// The sets of a mesh, in the order of its primitives: of each first what is there everywhere, then what is mixed. With
-// `wanted`, of those triangles of a primitive alone for which it holds.
+// The sets of a mesh, in the order of its primitives: of each first what is there everywhere, then what is
+// mixed. With `wanted`, of those triangles of a primitive alone for which it holds.
 using WantedTriangle = std::function<bool(const map::Primitive&, const glm::uvec3&)>;
-[[nodiscard]] std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map, const map::Mesh& mesh, const WantedTriangle& wanted = {});
+[[nodiscard]] std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
+                                                                      const map::Mesh& mesh,
+                                                                      const WantedTriangle& wanted = {});
 
 // Attaches the set to the scene under the id. REQUIRES: the set outlives the scene.
-void attach(RTCDeviceTy* device, RTCSceneTy* scene, TriangleSet& set, std::uint32_t id, const glm::mat4x3& scene_from_object = glm::mat4x3(1));
+void attach(RTCDeviceTy* device,
+            RTCSceneTy* scene,
+            TriangleSet& set,
+            std::uint32_t id,
+            const glm::mat4x3& scene_from_object = glm::mat4x3(1));
 
 }  // namespace drtv::trace

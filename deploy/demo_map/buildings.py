@@ -9,19 +9,19 @@ from shapes import Part, box, prism
 WALL_M = 0.18
 ROOM_HEIGHT_M = 2.4
 ROOM_MARGIN_M = 0.05
-DOOR_M = (1.0, 2.0)          # width, height
-ROOF_M = 0.22                # thickness, along y
-EAVES_M = 0.55               # how far the roof stands out
+DOOR_M = (1.0, 2.0)  # width, height
+ROOF_M = 0.22  # thickness, along y
+EAVES_M = 0.55  # how far the roof stands out
 ROOF_SLOPE = 0.8
 PIER_LENGTH_M, PIER_WIDTH_M, PIER_DECK_M = 54.0, 2.4, 1.1
 
 
 @dataclass(frozen=True)
 class HutKind:
-    length_m: float          # along x, outside; the ridge lies along it
-    depth_m: float           # along z, outside
-    floor_m: float           # the room's floor above the ground
-    wall: str                # material
+    length_m: float  # along x, outside; the ridge lies along it
+    depth_m: float  # along z, outside
+    floor_m: float  # the room's floor above the ground
+    wall: str  # material
     roof: str
 
     def room(self):
@@ -35,11 +35,13 @@ HUT_KINDS = {
     "hut_stone": HutKind(6.0, 4.4, 0.12, "basalt", "thatch"),
     "hut_lime": HutKind(7.2, 4.6, 0.15, "limewash", "clay"),
     "hut_stilts": HutKind(5.4, 4.2, 1.2, "timber", "thatch"),
-    "hut_painted": HutKind(6.2, 4.2, 1.2, "ochre", "timber_grey")}
+    "hut_painted": HutKind(6.2, 4.2, 1.2, "ochre", "timber_grey"),
+}
 
 
 def wall(part, along_x, span, across, y0, height_m, openings):
     """A wall with rectangular holes (start, end, bottom, top), measured along the wall and from its foot."""
+
     def piece(start, end, bottom, top):
         low, high = (start, y0 + bottom, across[0]), (end, y0 + top, across[1])
         box(part, *((low, high) if along_x else (low[::-1], high[::-1])))
@@ -57,10 +59,22 @@ def wall(part, along_x, span, across, y0, height_m, openings):
 def gabled_roof(walls, roof, kind, top_m):
     """Two slabs that meet at the ridge, and the gables. Slabs and gables run into each other: no light leaks."""
     half_depth, half_length = kind.depth_m / 2, kind.length_m / 2
-    under = lambda z: top_m + ROOF_SLOPE * (half_depth - WALL_M - z)   # the slab's lower face rests on the wall's inner edge
+    under = lambda z: top_m + ROOF_SLOPE * (
+        half_depth - WALL_M - z
+    )  # the slab's lower face rests on the wall's inner edge
     eave, x = half_depth + EAVES_M, half_length + EAVES_M
-    prism(roof, -x, x, [(under(0), 0), (under(eave), eave), (under(eave) + ROOF_M, eave), (under(0) + ROOF_M, 0)][::-1])
-    prism(roof, -x, x, [(under(0), 0), (under(eave), -eave), (under(eave) + ROOF_M, -eave), (under(0) + ROOF_M, 0)])
+    prism(
+        roof,
+        -x,
+        x,
+        [(under(0), 0), (under(eave), eave), (under(eave) + ROOF_M, eave), (under(0) + ROOF_M, 0)][::-1],
+    )
+    prism(
+        roof,
+        -x,
+        x,
+        [(under(0), 0), (under(eave), -eave), (under(eave) + ROOF_M, -eave), (under(0) + ROOF_M, 0)],
+    )
     foot = half_depth - WALL_M + 0.06 / ROOF_SLOPE
     for x0, x1 in ((-half_length, WALL_M - half_length), (half_length - WALL_M, half_length)):
         prism(walls, x0, x1, [(top_m, -foot), (under(0) + 0.06, 0), (top_m, foot)])
@@ -93,7 +107,11 @@ def stilts_and_steps(timber, x, z, floor, door_x):
         for pz in (-z + 0.2, z - 0.2):
             box(timber, (px - 0.11, -1.2, pz - 0.11), (px + 0.11, floor - 0.15, pz + 0.11))
     for step in range(4):
-        box(timber, (door_x - 0.6, -0.3, z + 0.3 * step), (door_x + 0.6, floor * (4 - step) / 5, z + 0.3 * step + 0.3))
+        box(
+            timber,
+            (door_x - 0.6, -0.3, z + 0.3 * step),
+            (door_x + 0.6, floor * (4 - step) / 5, z + 0.3 * step + 0.3),
+        )
 
 
 TOWER_HALF_M, TOWER_WALL_M, TOWER_HEIGHT_M = 2.4, 0.5, 7.5

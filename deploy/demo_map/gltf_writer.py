@@ -25,10 +25,19 @@ class GltfWriter:
     def __init__(self, materials, image_uri, copyright_note):
         self.known_materials, self.image_uri = materials, image_uri
         self.material_index, self.binary = {}, bytearray()
-        self.root = {"asset": {"version": "2.0", "generator": "make_demo_map.py", "copyright": copyright_note},
-                     "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": []}},
-                     "scene": 0, "scenes": [{"name": "island", "nodes": []}], "nodes": [], "meshes": [],
-                     "materials": [], "accessors": [], "bufferViews": [], "buffers": []}
+        self.root = {
+            "asset": {"version": "2.0", "generator": "make_demo_map.py", "copyright": copyright_note},
+            "extensionsUsed": ["KHR_lights_punctual"],
+            "extensions": {"KHR_lights_punctual": {"lights": []}},
+            "scene": 0,
+            "scenes": [{"name": "island", "nodes": []}],
+            "nodes": [],
+            "meshes": [],
+            "materials": [],
+            "accessors": [],
+            "bufferViews": [],
+            "buffers": [],
+        }
 
     def light(self, name, colour, intensity_cd):
         lights = self.root["extensions"]["KHR_lights_punctual"]["lights"]
@@ -45,23 +54,38 @@ class GltfWriter:
 
     def accessor(self, data, component, kind, count, target, **more):
         self.binary.extend(bytes(-len(self.binary) % 4))
-        self.root["bufferViews"].append({"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data),
-                                         "target": target})
+        self.root["bufferViews"].append(
+            {"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data), "target": target}
+        )
         self.binary.extend(data)
-        self.root["accessors"].append({"bufferView": len(self.root["bufferViews"]) - 1, "componentType": component,
-                                       "type": kind, "count": count, **more})
+        self.root["accessors"].append(
+            {
+                "bufferView": len(self.root["bufferViews"]) - 1,
+                "componentType": component,
+                "type": kind,
+                "count": count,
+                **more,
+            }
+        )
         return len(self.root["accessors"]) - 1
 
     def primitive(self, part):
         count = len(part.positions)
         floats = array.array("f", [value for position in part.positions for value in position])
-        bounds = {"min": [min(floats[axis::3]) for axis in range(3)], "max": [max(floats[axis::3]) for axis in range(3)]}
-        attributes = {"POSITION": self.accessor(little_endian("f", floats), FLOAT, "VEC3", count, VERTICES, **bounds)}
+        bounds = {
+            "min": [min(floats[axis::3]) for axis in range(3)],
+            "max": [max(floats[axis::3]) for axis in range(3)],
+        }
+        attributes = {
+            "POSITION": self.accessor(little_endian("f", floats), FLOAT, "VEC3", count, VERTICES, **bounds)
+        }
         if part.uvs:
             data = little_endian("f", [value for uv in part.uvs for value in uv])
             attributes["TEXCOORD_0"] = self.accessor(data, FLOAT, "VEC2", count, VERTICES)
-        if part.colours:   # 16 bits: 8 would show steps in linear albedos as dark as ours
-            data = little_endian("H", [int(value * 65535 + 0.5) for rgb in part.colours for value in (*rgb, 1.0)])
+        if part.colours:  # 16 bits: 8 would show steps in linear albedos as dark as ours
+            data = little_endian(
+                "H", [int(value * 65535 + 0.5) for rgb in part.colours for value in (*rgb, 1.0)]
+            )
             attributes["COLOR_0"] = self.accessor(data, UINT16, "VEC4", count, VERTICES, normalized=True)
         corners = [index for triangle in part.triangles for index in triangle]
         code, component = ("H", UINT16) if count < 65535 else ("I", UINT32)
@@ -75,7 +99,9 @@ class GltfWriter:
         self.root["meshes"].append({"name": name, "primitives": [self.primitive(part) for part in parts]})
         return len(self.root["meshes"]) - 1
 
-    def node(self, parent, name, mesh=None, translation=None, rotation=None, scale=None, light=None, **extras):
+    def node(
+        self, parent, name, mesh=None, translation=None, rotation=None, scale=None, light=None, **extras
+    ):
         node = {"name": name}
         if mesh is not None:
             node["mesh"] = mesh
@@ -91,7 +117,11 @@ class GltfWriter:
             node["extras"] = extras
         index = len(self.root["nodes"])
         self.root["nodes"].append(node)
-        above = self.root["scenes"][0]["nodes"] if parent is None else self.root["nodes"][parent].setdefault("children", [])
+        above = (
+            self.root["scenes"][0]["nodes"]
+            if parent is None
+            else self.root["nodes"][parent].setdefault("children", [])
+        )
         above.append(index)
         return index
 

@@ -9,19 +9,20 @@ import math
 
 from portable_math import cos_sin, layered_noise, mix, smoothstep
 
-WEST_M, SOUTH_M = -384, -256             # a sector corner; the map straddles the origin
+WEST_M, SOUTH_M = -384, -256  # a sector corner; the map straddles the origin
 SAMPLE_M, SPACING_M, TILE_M, SECTOR_M = 10, 4, 128, 64
-SEA_LEVEL_M, SEABED_M = 98.0, -11.0      # in the published heights; in ours
-SHELF = 0.3                              # how far in the ground has risen from the seabed; 1 is from edge to middle
+SEA_LEVEL_M, SEABED_M = 98.0, -11.0  # in the published heights; in ours
+SHELF = 0.3  # how far in the ground has risen from the seabed; 1 is from edge to middle
 
 CRATER = (-94.0, 76.0)
 TOWER = (-4.0, 12.0)
 VILLAGES = {"shore": (246.0, 230.0), "inland": (222.0, -78.0)}
 PATHS = [
-    [(246, 230), (254, 150), (222, 66), (232, -20), (222, -78)],      # village to village
-    [(222, -78), (150, -62), (92, -22), (34, 2), (2, 12)],            # up to the tower
-    [(2, 12), (-6, 20), (-52, 40), (-94, 76)],                        # down into the crater
-    [(246, 230), (284, 226), (340, 226)]]                             # to the pier
+    [(246, 230), (254, 150), (222, 66), (232, -20), (222, -78)],  # village to village
+    [(222, -78), (150, -62), (92, -22), (34, 2), (2, 12)],  # up to the tower
+    [(2, 12), (-6, 20), (-52, 40), (-94, 76)],  # down into the crater
+    [(246, 230), (284, 226), (340, 226)],
+]  # to the pier
 
 SAND, WET_SAND, DIRT = (0.5, 0.43, 0.3), (0.3, 0.25, 0.17), (0.22, 0.15, 0.09)
 GRASS, FOREST_FLOOR, BASALT = (0.11, 0.17, 0.05), (0.075, 0.075, 0.035), (0.09, 0.085, 0.08)
@@ -33,7 +34,7 @@ class HutSite:
     village: str
     x: float
     y: float
-    facing: tuple       # the way its door looks, (east, north), a unit vector
+    facing: tuple  # the way its door looks, (east, north), a unit vector
 
 
 def village_sites():
@@ -43,7 +44,9 @@ def village_sites():
         for k in range(10):
             cosine, sine = cos_sin(k / 10 + 0.05 + 0.012 * ((k * 7) % 5 - 2))
             ring_m = (20.0, 33.0)[k % 2]
-            sites.append(HutSite(f"{village}_{k}", village, x + ring_m * cosine, y + ring_m * sine, (-cosine, -sine)))
+            sites.append(
+                HutSite(f"{village}_{k}", village, x + ring_m * cosine, y + ring_m * sine, (-cosine, -sine))
+            )
     return sites
 
 
@@ -64,7 +67,9 @@ def path_distance_m(x, y):
 
 
 def catmull_rom(before, a, b, after, t):
-    return a + 0.5 * t * (b - before + t * (2 * before - 5 * a + 4 * b - after + t * (3 * (a - b) + after - before)))
+    return a + 0.5 * t * (
+        b - before + t * (2 * before - 5 * a + 4 * b - after + t * (3 * (a - b) + after - before))
+    )
 
 
 class Island:
@@ -72,7 +77,9 @@ class Island:
 
     def __init__(self, csv_path, seed):
         with open(csv_path, newline="") as file:
-            self.published_m = [[float(cell) for cell in row] for row in csv.reader(file)]   # rows from north to south
+            self.published_m = [
+                [float(cell) for cell in row] for row in csv.reader(file)
+            ]  # rows from north to south
         self.seed = seed
         self.columns = (len(self.published_m[0]) - 1) * SAMPLE_M // SPACING_M + 1
         self.rows = (len(self.published_m) - 1) * SAMPLE_M // SPACING_M + 1
@@ -81,8 +88,13 @@ class Island:
         self.sites = village_sites()
         pads = [(s.x, s.y, 4.5, max(0.9, self.natural_height_m(s.x, s.y))) for s in self.sites]
         pads.append((*TOWER, 4.0, self.natural_height_m(*TOWER)))
-        self.heights_m = [[self.padded_height_m(WEST_M + i * SPACING_M, SOUTH_M + j * SPACING_M, pads)
-                           for i in range(self.columns)] for j in range(self.rows)]
+        self.heights_m = [
+            [
+                self.padded_height_m(WEST_M + i * SPACING_M, SOUTH_M + j * SPACING_M, pads)
+                for i in range(self.columns)
+            ]
+            for j in range(self.rows)
+        ]
 
     def published_height_m(self, x, y):
         column, row = (x - WEST_M) / SAMPLE_M, (self.north_m - y) / SAMPLE_M
@@ -95,11 +107,19 @@ class Island:
     def natural_height_m(self, x, y):
         u = (2 * x - WEST_M - self.east_m) / (self.east_m - WEST_M)
         v = (2 * y - SOUTH_M - self.north_m) / (self.north_m - SOUTH_M)
-        inward = max(0.0, 1 - math.sqrt(math.sqrt(u * u * u * u + v * v * v * v)))    # 0 on a rounded oblong in the map
+        inward = max(
+            0.0, 1 - math.sqrt(math.sqrt(u * u * u * u + v * v * v * v))
+        )  # 0 on a rounded oblong in the map
         bays = 0.35 + 1.3 * layered_noise(x / 110, y / 110, self.seed * 16 + 1)
-        above_m = self.published_height_m(x, y) - SEA_LEVEL_M + 1.6 * (layered_noise(x / 17, y / 17, self.seed * 16 + 4) - 0.5)
+        above_m = (
+            self.published_height_m(x, y)
+            - SEA_LEVEL_M
+            + 1.6 * (layered_noise(x / 17, y / 17, self.seed * 16 + 4) - 0.5)
+        )
         height_m = mix(SEABED_M, above_m, smoothstep(0, SHELF, inward * bays))
-        return height_m * mix(0.35, 1.0, smoothstep(0, 7, abs(height_m)))      # a flat beach on both sides of the waterline
+        return height_m * mix(
+            0.35, 1.0, smoothstep(0, 7, abs(height_m))
+        )  # a flat beach on both sides of the waterline
 
     def padded_height_m(self, x, y, pads):
         """The ground is level under each building; where two pads overlap, the nearer one has the last word."""
@@ -115,7 +135,10 @@ class Island:
         column, row = (x - WEST_M) / SPACING_M, (y - SOUTH_M) / SPACING_M
         i, j = min(int(column), self.columns - 2), min(int(row), self.rows - 2)
         u, v = column - i, row - j
-        (south_west, south_east), (north_west, north_east) = self.heights_m[j][i:i + 2], self.heights_m[j + 1][i:i + 2]
+        (south_west, south_east), (north_west, north_east) = (
+            self.heights_m[j][i : i + 2],
+            self.heights_m[j + 1][i : i + 2],
+        )
         if v > u:
             return south_west + v * (north_west - south_west) + u * (north_east - north_west)
         return south_west + u * (south_east - south_west) + v * (north_east - south_east)
@@ -133,20 +156,28 @@ class Island:
         clumps = smoothstep(0.4, 0.56, layered_noise(x / 90, y / 90, self.seed * 16 + 7))
         for centre in VILLAGES.values():
             clumps *= smoothstep(35, 60, distance_m(x, y, centre))
-        return clumps * smoothstep(28, 60, distance_m(x, y, CRATER)) * smoothstep(8, 26, distance_m(x, y, TOWER))
+        return (
+            clumps * smoothstep(28, 60, distance_m(x, y, CRATER)) * smoothstep(8, 26, distance_m(x, y, TOWER))
+        )
 
     def bare_rock(self, x, y):
         patches = smoothstep(0.42, 0.6, layered_noise(x / 24, y / 24, self.seed * 16 + 10))
-        crater = (1 - smoothstep(50, 95, distance_m(x, y, CRATER))) * smoothstep(18, 34, distance_m(x, y, CRATER))
+        crater = (1 - smoothstep(50, 95, distance_m(x, y, CRATER))) * smoothstep(
+            18, 34, distance_m(x, y, CRATER)
+        )
         return max(smoothstep(0.55, 0.8, self.slope(x, y)), crater * patches)
 
     def colour(self, x, y):
         """Linear albedo of the ground."""
         height_m = self.ground_m(x, y)
         grain = layered_noise(x / 9, y / 9, self.seed * 16 + 13)
-        layers = ((FOREST_FLOOR, self.jungle(x, y)), (BASALT, self.bare_rock(x, y)),
-                  (SAND, 1 - smoothstep(1.3, 2.6, height_m + grain)), (WET_SAND, 1 - smoothstep(0.05, 0.5, height_m)),
-                  (DIRT, 0.85 * (1 - smoothstep(1.0, 3.2, path_distance_m(x, y))) * smoothstep(0.3, 1.0, height_m)))
+        layers = (
+            (FOREST_FLOOR, self.jungle(x, y)),
+            (BASALT, self.bare_rock(x, y)),
+            (SAND, 1 - smoothstep(1.3, 2.6, height_m + grain)),
+            (WET_SAND, 1 - smoothstep(0.05, 0.5, height_m)),
+            (DIRT, 0.85 * (1 - smoothstep(1.0, 3.2, path_distance_m(x, y))) * smoothstep(0.3, 1.0, height_m)),
+        )
         colour = GRASS
         for layer, share in layers:
             colour = tuple(mix(a, b, share) for a, b in zip(colour, layer))

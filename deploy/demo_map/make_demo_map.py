@@ -26,25 +26,48 @@ def opaque(r, g, b):
 
 
 def leaf(r, g, b):
-    return {"pbrMetallicRoughness": {"baseColorFactor": [r, g, b, 1], "metallicFactor": 0,
-                                     "baseColorTexture": {"index": 0}}, "alphaMode": "MASK", "doubleSided": True}
+    return {
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [r, g, b, 1],
+            "metallicFactor": 0,
+            "baseColorTexture": {"index": 0},
+        },
+        "alphaMode": "MASK",
+        "doubleSided": True,
+    }
 
 
 MATERIALS = {
-    "ground": opaque(1, 1, 1), "sea": opaque(0.02, 0.05, 0.06), "bark": opaque(0.12, 0.08, 0.05),
-    "basalt": opaque(0.09, 0.085, 0.08), "stone": opaque(0.2, 0.19, 0.17), "timber": opaque(0.25, 0.16, 0.08),
-    "timber_grey": opaque(0.23, 0.2, 0.17), "thatch": opaque(0.3, 0.22, 0.1), "limewash": opaque(0.62, 0.58, 0.5),
-    "clay": opaque(0.36, 0.13, 0.07), "ochre": opaque(0.45, 0.27, 0.08), "foliage": opaque(0.05, 0.095, 0.022),
-    "leaf_palm": leaf(0.95, 0.95, 0.9), "leaf_light": leaf(0.85, 0.9, 0.8), "leaf_dark": leaf(0.7, 0.75, 0.7),
-    "leaf_fern": leaf(0.8, 1.0, 0.7)}
+    "ground": opaque(1, 1, 1),
+    "sea": opaque(0.02, 0.05, 0.06),
+    "bark": opaque(0.12, 0.08, 0.05),
+    "basalt": opaque(0.09, 0.085, 0.08),
+    "stone": opaque(0.2, 0.19, 0.17),
+    "timber": opaque(0.25, 0.16, 0.08),
+    "timber_grey": opaque(0.23, 0.2, 0.17),
+    "thatch": opaque(0.3, 0.22, 0.1),
+    "limewash": opaque(0.62, 0.58, 0.5),
+    "clay": opaque(0.36, 0.13, 0.07),
+    "ochre": opaque(0.45, 0.27, 0.08),
+    "foliage": opaque(0.05, 0.095, 0.022),
+    "leaf_palm": leaf(0.95, 0.95, 0.9),
+    "leaf_light": leaf(0.85, 0.9, 0.8),
+    "leaf_dark": leaf(0.7, 0.75, 0.7),
+    "leaf_fern": leaf(0.8, 1.0, 0.7),
+}
 
 
 def add_ground_and_sea(builder):
     per_tile = TILE_M // SPACING_M
     for first_row in range(0, builder.island.rows - 1, per_tile):
         for first_column in range(0, builder.island.columns - 1, per_tile):
-            add_tile(builder, first_column, first_row, min(first_column + per_tile, builder.island.columns - 1),
-                     min(first_row + per_tile, builder.island.rows - 1))
+            add_tile(
+                builder,
+                first_column,
+                first_row,
+                min(first_column + per_tile, builder.island.columns - 1),
+                min(first_row + per_tile, builder.island.rows - 1),
+            )
 
 
 def add_tile(builder, first_column, first_row, last_column, last_row):
@@ -56,20 +79,33 @@ def add_tile(builder, first_column, first_row, last_column, last_row):
             ground.colours.append(island.colour(x, y))
     width = last_column - first_column + 1
     for south_west in range(len(ground.positions) - width):
-        if south_west % width < width - 1:    # split from south-west to north-east, as Island.ground_m does
+        if south_west % width < width - 1:  # split from south-west to north-east, as Island.ground_m does
             south_east, north_west, north_east = south_west + 1, south_west + width, south_west + width + 1
             ground.triangles += [(north_west, south_west, north_east), (north_east, south_west, south_east)]
     west_m, south_m = WEST_M + first_column * SPACING_M, SOUTH_M + first_row * SPACING_M
     tile = builder.tile(west_m, south_m)
     builder.writer.node(tile, "ground", builder.mesh(f"ground_{first_column}_{first_row}", lambda: [ground]))
     if min(position[1] for position in ground.positions) < 0:
-        share = ((last_column - first_column) * SPACING_M / TILE_M, 1, (last_row - first_row) * SPACING_M / TILE_M)
-        builder.writer.node(tile, "sea", builder.mesh("sea", sea_square), (west_m, 0, -south_m),
-                            scale=None if share == (1, 1, 1) else share)
+        share = (
+            (last_column - first_column) * SPACING_M / TILE_M,
+            1,
+            (last_row - first_row) * SPACING_M / TILE_M,
+        )
+        builder.writer.node(
+            tile,
+            "sea",
+            builder.mesh("sea", sea_square),
+            (west_m, 0, -south_m),
+            scale=None if share == (1, 1, 1) else share,
+        )
 
 
 def sea_square():
-    return [Part("sea", [(0, 0, 0), (TILE_M, 0, 0), (TILE_M, 0, -TILE_M), (0, 0, -TILE_M)], [(0, 1, 2), (0, 2, 3)])]
+    return [
+        Part(
+            "sea", [(0, 0, 0), (TILE_M, 0, 0), (TILE_M, 0, -TILE_M), (0, 0, -TILE_M)], [(0, 1, 2), (0, 2, 3)]
+        )
+    ]
 
 
 def add_huts(builder):
@@ -81,22 +117,36 @@ def add_huts(builder):
         kind_name = kinds[number % len(kinds)]
         kind = buildings.HUT_KINDS[kind_name]
         east, north = site.facing
-        hut = builder.writer.node(builder.tile(site.x, site.y), f"hut_{site.name}",
-                                  builder.mesh(kind_name, lambda: buildings.hut(kind)),
-                                  (site.x, builder.island.ground_m(site.x, site.y), -site.y), yaw(east, -north))
+        hut = builder.writer.node(
+            builder.tile(site.x, site.y),
+            f"hut_{site.name}",
+            builder.mesh(kind_name, lambda: buildings.hut(kind)),
+            (site.x, builder.island.ground_m(site.x, site.y), -site.y),
+            yaw(east, -north),
+        )
         if site.name.endswith(("_0", "_1")):
             low, high = kind.room()
             probe = f"probe_{site.name}"
-            builder.writer.node(hut, f"room_{site.name}", builder.mesh(f"room_{kind_name}", lambda: buildings.volume(low, high)),
-                                bake_role="interior", bake_probe=probe)
+            builder.writer.node(
+                hut,
+                f"room_{site.name}",
+                builder.mesh(f"room_{kind_name}", lambda: buildings.volume(low, high)),
+                bake_role="interior",
+                bake_probe=probe,
+            )
             builder.writer.node(hut, probe, translation=(0, low[1] + 1.3, 0), bake_role="probe")
             builder.writer.node(hut, f"lamp_{site.name}", translation=(0.4, high[1] - 0.35, -0.3), light=lamp)
 
 
 def add_tower(builder):
     x, y = TOWER
-    tower = builder.writer.node(builder.tile(x, y), "tower", builder.mesh("tower", buildings.tower),
-                                (x, builder.island.ground_m(x, y), -y), yaw(1.0, 0.0))
+    tower = builder.writer.node(
+        builder.tile(x, y),
+        "tower",
+        builder.mesh("tower", buildings.tower),
+        (x, builder.island.ground_m(x, y), -y),
+        yaw(1.0, 0.0),
+    )
     air = builder.mesh("tower_air", lambda: buildings.volume(*buildings.tower_air()))
     builder.writer.node(tower, "tower_air", air, bake_role="no_probes")
 
@@ -127,7 +177,9 @@ class Arguments(argparse.ArgumentParser):
 
 def parse_arguments():
     parser = Arguments(description="Make drtv's demo map.", allow_abbrev=False)
-    parser.add_argument("--out", required=True, type=Path, help="folder for island.gltf, island.bin and leaf.png")
+    parser.add_argument(
+        "--out", required=True, type=Path, help="folder for island.gltf, island.bin and leaf.png"
+    )
     parser.add_argument("--seed", type=int, default=1, help="another island of the same shape (default 1)")
     parser.add_argument("--plants", type=int, default=6000, help=f"0 to {MOST_PLANTS} (default 6000)")
     parser.add_argument("--stats", action="store_true", help="tell counts and extents on stderr")

@@ -45,7 +45,9 @@ class MapBuilder:
     def vegetation_of_tile(self, x, y):
         tile = self.tile(x, y)
         if tile not in self.vegetation:
-            self.vegetation[tile] = self.writer.node(tile, f"plants_{len(self.vegetation)}", bake_role="vegetation")
+            self.vegetation[tile] = self.writer.node(
+                tile, f"plants_{len(self.vegetation)}", bake_role="vegetation"
+            )
         return self.vegetation[tile]
 
 
@@ -55,15 +57,23 @@ def instances(builder):
 
     def visit(index, place):
         node = nodes[index]
-        shift, rotation, scale = (node.get("translation", (0, 0, 0)), node.get("rotation", (0, 0, 0, 1)),
-                                  node.get("scale", (1, 1, 1)))
+        shift, rotation, scale = (
+            node.get("translation", (0, 0, 0)),
+            node.get("rotation", (0, 0, 0, 1)),
+            node.get("scale", (1, 1, 1)),
+        )
         here = lambda p: place(add(turned(rotation, tuple(a * s for a, s in zip(p, scale))), shift))
         if "mesh" in node:
             corners = []
             for primitive in builder.writer.root["meshes"][node["mesh"]]["primitives"]:
                 bounds = accessors[primitive["attributes"]["POSITION"]]
                 low, high = bounds["min"], bounds["max"]
-                corners += [here((x, y, z)) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+                corners += [
+                    here((x, y, z))
+                    for x in (low[0], high[0])
+                    for y in (low[1], high[1])
+                    for z in (low[2], high[2])
+                ]
             yield node["mesh"], corners
         for child in node.get("children", ()):
             yield from visit(child, here)
@@ -80,11 +90,17 @@ def print_stats(builder):
         drawn += triangles[mesh]
         corners += mesh_corners
     low, high = ([pick(corner[axis] for corner in corners) for axis in range(3)] for pick in (min, max))
-    plant_count = sum(len(builder.writer.root["nodes"][node]["children"]) for node in builder.vegetation.values())
+    plant_count = sum(
+        len(builder.writer.root["nodes"][node]["children"]) for node in builder.vegetation.values()
+    )
     sectors = ((builder.island.east_m - 1) // SECTOR_M - WEST_M // SECTOR_M + 1) * (
-        (builder.island.north_m - 1) // SECTOR_M - SOUTH_M // SECTOR_M + 1)
-    print(f"objects {len(objects)} (plants {plant_count}), meshes {len(triangles)}\n"
-          f"triangles {sum(triangles)} unique, {drawn} instanced\n"
-          f"extent glTF x {low[0]:.1f}..{high[0]:.1f} y {low[1]:.1f}..{high[1]:.1f} z {low[2]:.1f}..{high[2]:.1f}\n"
-          f"extent world x {low[0]:.1f}..{high[0]:.1f} y {-high[2]:.1f}..{-low[2]:.1f} z {low[1]:.1f}..{high[1]:.1f}\n"
-          f"sectors {sectors}", file=sys.stderr)
+        (builder.island.north_m - 1) // SECTOR_M - SOUTH_M // SECTOR_M + 1
+    )
+    print(
+        f"objects {len(objects)} (plants {plant_count}), meshes {len(triangles)}\n"
+        f"triangles {sum(triangles)} unique, {drawn} instanced\n"
+        f"extent glTF x {low[0]:.1f}..{high[0]:.1f} y {low[1]:.1f}..{high[1]:.1f} z {low[2]:.1f}..{high[2]:.1f}\n"
+        f"extent world x {low[0]:.1f}..{high[0]:.1f} y {-high[2]:.1f}..{-low[2]:.1f} z {low[1]:.1f}..{high[1]:.1f}\n"
+        f"sectors {sectors}",
+        file=sys.stderr,
+    )

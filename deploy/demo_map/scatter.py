@@ -42,11 +42,18 @@ def choose_plant(island, rng, x, y):
     shore = 1 - smoothstep(2.5, 9, height_m)
     inland = smoothstep(2, 5, height_m)
     trees = 0 if near_building(island, x, y, 3.0) or path_m < 3 else 1 - rock
-    chances = (("palm_tall", trees * (0.16 * shore + 0.04 * jungle)), ("palm_short", trees * (0.16 * shore + 0.03 * jungle)),
-               ("tree_open", trees * inland * (0.2 * jungle + 0.004)), ("tree_open_young", trees * inland * (0.12 * jungle + 0.006)),
-               ("tree_dense", trees * inland * (0.2 * jungle + 0.002)), ("tree_dense_young", trees * inland * 0.12 * jungle),
-               ("bush_leafy", 0.03 + 0.06 * jungle + 0.05 * shore), ("bush_dense", 0.03 + 0.05 * jungle),
-               ("fern_large", inland * (0.015 + 0.12 * jungle)), ("fern_small", 0.02 + 0.07 * jungle * inland))
+    chances = (
+        ("palm_tall", trees * (0.16 * shore + 0.04 * jungle)),
+        ("palm_short", trees * (0.16 * shore + 0.03 * jungle)),
+        ("tree_open", trees * inland * (0.2 * jungle + 0.004)),
+        ("tree_open_young", trees * inland * (0.12 * jungle + 0.006)),
+        ("tree_dense", trees * inland * (0.2 * jungle + 0.002)),
+        ("tree_dense_young", trees * inland * 0.12 * jungle),
+        ("bush_leafy", 0.03 + 0.06 * jungle + 0.05 * shore),
+        ("bush_dense", 0.03 + 0.05 * jungle),
+        ("fern_large", inland * (0.015 + 0.12 * jungle)),
+        ("fern_small", 0.02 + 0.07 * jungle * inland),
+    )
     draw = rng.random()
     for name, chance in chances:
         if draw < chance:
@@ -63,12 +70,22 @@ def add_plants(builder, seed, count):
             return
         x, y = between(rng, WEST_M, island.east_m), between(rng, SOUTH_M, island.north_m)
         name = choose_plant(island, rng, x, y)
-        if not name or not all_plants.take(x, y) or (name.startswith(("palm", "tree")) and not trees.take(x, y)):
+        if (
+            not name
+            or not all_plants.take(x, y)
+            or (name.startswith(("palm", "tree")) and not trees.take(x, y))
+        ):
             continue
         cosine, sine = cos_sin(rng.random())
         mesh = builder.mesh(name, lambda: plants.build_plant(seed, name))
-        builder.writer.node(builder.vegetation_of_tile(x, y), name, mesh, (x, island.ground_m(x, y), -y),
-                            yaw(sine, cosine), (between(rng, 0.78, 1.22),) * 3)
+        builder.writer.node(
+            builder.vegetation_of_tile(x, y),
+            name,
+            mesh,
+            (x, island.ground_m(x, y), -y),
+            yaw(sine, cosine),
+            (between(rng, 0.78, 1.22),) * 3,
+        )
         planted += 1
     raise MapError(f"--plants {count}: the island has room for only {planted}")
 
@@ -79,17 +96,32 @@ def add_rocks(builder, seed):
         x, y = between(rng, WEST_M, island.east_m), between(rng, SOUTH_M, island.north_m)
         height_m = island.ground_m(x, y)
         likely = max(0.9 * island.bare_rock(x, y), 0.5 if -1.2 < height_m < 0.7 else 0.05)
-        if height_m < -1.2 or path_distance_m(x, y) < 5 or near_building(island, x, y, 4) or rng.random() > likely:
+        if (
+            height_m < -1.2
+            or path_distance_m(x, y) < 5
+            or near_building(island, x, y, 4)
+            or rng.random() > likely
+        ):
             continue
         if not spacing.take(x, y):
             continue
         names = list(plants.ROCKS)
         name = names[int(rng.random() * len(names))]
-        radius_m = 0.3 + 1.7 * rng.random() * rng.random()      # 0.5 to 4 m across, small ones more often
+        radius_m = 0.3 + 1.7 * rng.random() * rng.random()  # 0.5 to 4 m across, small ones more often
         rotation = [between(rng, -1, 1) for _ in range(4)]
-        length = math.sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2]
-                           + rotation[3] * rotation[3])
+        length = math.sqrt(
+            rotation[0] * rotation[0]
+            + rotation[1] * rotation[1]
+            + rotation[2] * rotation[2]
+            + rotation[3] * rotation[3]
+        )
         mesh = builder.mesh(name, lambda: plants.build_rock(seed, name))
-        builder.writer.node(builder.tile(x, y), name, mesh, (x, height_m - 0.25 * radius_m, -y),
-                            [value / length for value in rotation], (radius_m,) * 3)
+        builder.writer.node(
+            builder.tile(x, y),
+            name,
+            mesh,
+            (x, height_m - 0.25 * radius_m, -y),
+            [value / length for value in rotation],
+            (radius_m,) * 3,
+        )
         placed += 1

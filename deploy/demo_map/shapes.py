@@ -8,11 +8,12 @@ from portable_math import add, between, cos_sin, cross, dot, scaled, unit
 @dataclass
 class Part:
     """The triangles of a mesh that share a material."""
+
     material: str
     positions: list = field(default_factory=list)
     triangles: list = field(default_factory=list)
-    uvs: list = field(default_factory=list)         # empty, or one a position
-    colours: list = field(default_factory=list)     # empty, or one linear RGB a position
+    uvs: list = field(default_factory=list)  # empty, or one a position
+    colours: list = field(default_factory=list)  # empty, or one linear RGB a position
 
 
 def append(part, positions, triangles, uvs=()):
@@ -31,9 +32,14 @@ def prism(part, x0, x1, outline):
     """A convex outline of (y, z), counter-clockwise seen from +x, swept from x0 to x1."""
     n = len(outline)
     sides = [(k, (k + 1) % n) for k in range(n)]
-    append(part, [(x, y, z) for x in (x0, x1) for y, z in outline],
-           [(a, b, n + b) for a, b in sides] + [(a, n + b, n + a) for a, b in sides]
-           + [(0, k + 1, k) for k in range(1, n - 1)] + [(n, n + k, n + k + 1) for k in range(1, n - 1)])
+    append(
+        part,
+        [(x, y, z) for x in (x0, x1) for y, z in outline],
+        [(a, b, n + b) for a, b in sides]
+        + [(a, n + b, n + a) for a, b in sides]
+        + [(0, k + 1, k) for k in range(1, n - 1)]
+        + [(n, n + k, n + k + 1) for k in range(1, n - 1)],
+    )
 
 
 def tube(part, spine, radii_m, sides):
@@ -52,7 +58,10 @@ def tube(part, spine, radii_m, sides):
     triangles, top = [], last * sides
     for a, b in ((side, (side + 1) % sides) for side in range(sides)):
         for ring in range(0, top, sides):
-            triangles += [(ring + a, ring + b, ring + sides + b), (ring + a, ring + sides + b, ring + sides + a)]
+            triangles += [
+                (ring + a, ring + b, ring + sides + b),
+                (ring + a, ring + sides + b, ring + sides + a),
+            ]
         triangles += [(top + sides, b, a), (top + sides + 1, top + a, top + b)]
     append(part, positions, triangles)
 
@@ -60,7 +69,7 @@ def tube(part, spine, radii_m, sides):
 def unit_icosphere(level):
     golden = (1 + math.sqrt(5)) / 2
     corners = [p for a in (-1, 1) for b in (-golden, golden) for p in ((0, a, b), (a, b, 0), (b, 0, a))]
-    near = lambda p, q: dot(add(p, scaled(q, -1)), add(p, scaled(q, -1))) < 4.1   # an edge is 2 long
+    near = lambda p, q: dot(add(p, scaled(q, -1)), add(p, scaled(q, -1))) < 4.1  # an edge is 2 long
     triangles = []
     for i, p in enumerate(corners):
         for j in range(i + 1, 12):
@@ -94,14 +103,22 @@ def blob(part, rng, centre, radii_m):
     """A clump of foliage: a ball whose surface is uneven along its radii, so it cannot fold over itself."""
     positions, triangles = unit_icosphere(1)
     uneven = [scaled(p, between(rng, 0.8, 1.1)) for p in positions]
-    append(part, [add(centre, (p[0] * radii_m[0], p[1] * radii_m[1], p[2] * radii_m[2])) for p in uneven], triangles)
+    append(
+        part,
+        [add(centre, (p[0] * radii_m[0], p[1] * radii_m[1], p[2] * radii_m[2])) for p in uneven],
+        triangles,
+    )
 
 
 def card(part, base, along, side):
     """One leaf card from its base to its tip; `side` is its whole width."""
     left, right = add(base, scaled(side, -0.5)), add(base, scaled(side, 0.5))
-    append(part, [left, right, add(right, along), add(left, along)], [(0, 1, 2), (0, 2, 3)],
-           [(0, 1), (1, 1), (1, 0), (0, 0)])
+    append(
+        part,
+        [left, right, add(right, along), add(left, along)],
+        [(0, 1, 2), (0, 2, 3)],
+        [(0, 1), (1, 1), (1, 0), (0, 0)],
+    )
 
 
 def frond(part, base, turns, length_m, half_width_m, rise, fall, steps):

@@ -1,4 +1,5 @@
-// How much light changes from one sector to the next, beside how much it changes inside the two (SPEC.md, section 6).
+// How much light changes from one sector to the next, beside how much it changes inside the two (SPEC.md,
+// section 6).
 #pragma once
 
 #include <drtv/validate_region.h>
@@ -13,7 +14,8 @@ namespace drtv {
 
 struct BorderStep {
     double across = 0;  // mean step between the probes of the cells on both sides
-    double inside = 0;  // mean step between cells side by side that name different probes; 0 where there are none
+    double inside =
+        0;  // mean step between cells side by side that name different probes; 0 where there are none
     std::size_t steps_inside = 0;
 };
 

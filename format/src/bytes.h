@@ -21,7 +21,8 @@ template <class Unsigned>
         return value;
     }
     std::uint64_t value = 0;
-    for (std::size_t k = 0; k < sizeof(Unsigned); ++k) value |= std::uint64_t{bytes[offset + k]} << (8 * k);
+    for (std::size_t k = 0; k < sizeof(Unsigned); ++k)
+        value |= std::uint64_t{bytes[offset + k]} << (8 * k);
     return static_cast<Unsigned>(value);
 }
 
@@ -32,10 +33,18 @@ inline void append_le(std::vector<std::uint8_t>& bytes, Unsigned value) {
     }
 }
 
-[[nodiscard]] inline std::int16_t load_i16(std::span<const std::uint8_t> b, std::size_t o) { return static_cast<std::int16_t>(load_le<std::uint16_t>(b, o)); }
-[[nodiscard]] inline std::int32_t load_i32(std::span<const std::uint8_t> b, std::size_t o) { return static_cast<std::int32_t>(load_le<std::uint32_t>(b, o)); }
-[[nodiscard]] inline float load_f32(std::span<const std::uint8_t> b, std::size_t o) { return std::bit_cast<float>(load_le<std::uint32_t>(b, o)); }
-inline void append_f32(std::vector<std::uint8_t>& b, float value) { append_le(b, std::bit_cast<std::uint32_t>(value)); }
+[[nodiscard]] inline std::int16_t load_i16(std::span<const std::uint8_t> b, std::size_t o) {
+    return static_cast<std::int16_t>(load_le<std::uint16_t>(b, o));
+}
+[[nodiscard]] inline std::int32_t load_i32(std::span<const std::uint8_t> b, std::size_t o) {
+    return static_cast<std::int32_t>(load_le<std::uint32_t>(b, o));
+}
+[[nodiscard]] inline float load_f32(std::span<const std::uint8_t> b, std::size_t o) {
+    return std::bit_cast<float>(load_le<std::uint32_t>(b, o));
+}
+inline void append_f32(std::vector<std::uint8_t>& b, float value) {
+    append_le(b, std::bit_cast<std::uint32_t>(value));
+}
 
 [[nodiscard]] inline bool all_zero(std::span<const std::uint8_t> bytes) {
     return std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b == 0; });
@@ -43,7 +52,9 @@ inline void append_f32(std::vector<std::uint8_t>& b, float value) { append_le(b,
 
 // Fixed-point codes of an array of arrays of any depth, the last index fastest. Gives the offset behind them.
 template <class Element, std::size_t count>
-std::size_t load_codes(std::span<const std::uint8_t> bytes, std::size_t offset, std::array<Element, count>& codes) {
+std::size_t load_codes(std::span<const std::uint8_t> bytes,
+                       std::size_t offset,
+                       std::array<Element, count>& codes) {
     for (Element& element : codes) {
         if constexpr (std::is_same_v<Element, std::int16_t>) {
             element = load_i16(bytes, offset);
@@ -58,8 +69,10 @@ std::size_t load_codes(std::span<const std::uint8_t> bytes, std::size_t offset, 
 template <class Element, std::size_t count>
 void append_codes(std::vector<std::uint8_t>& bytes, const std::array<Element, count>& codes) {
     for (const Element& element : codes) {
-        if constexpr (std::is_same_v<Element, std::int16_t>) append_le(bytes, static_cast<std::uint16_t>(element));
-        else append_codes(bytes, element);
+        if constexpr (std::is_same_v<Element, std::int16_t>)
+            append_le(bytes, static_cast<std::uint16_t>(element));
+        else
+            append_codes(bytes, element);
     }
 }
 

@@ -7,8 +7,9 @@
 namespace drtv {
 namespace {
 
-constexpr std::uint64_t prime1 = 0x9E3779B185EBCA87u, prime2 = 0xC2B2AE3D27D4EB4Fu, prime3 = 0x165667B19E3779F9u,
-                        prime4 = 0x85EBCA77C2B2AE63u, prime5 = 0x27D4EB2F165667C5u;
+constexpr std::uint64_t prime1 = 0x9E3779B185EBCA87u, prime2 = 0xC2B2AE3D27D4EB4Fu,
+                        prime3 = 0x165667B19E3779F9u, prime4 = 0x85EBCA77C2B2AE63u,
+                        prime5 = 0x27D4EB2F165667C5u;
 
 constexpr std::uint64_t round(std::uint64_t lane, std::uint64_t input) {
     return std::rotl(lane + input * prime2, 31) * prime1;
@@ -42,7 +43,8 @@ std::uint64_t xxh64(std::span<const std::uint8_t> bytes) {
         hash = std::rotl(hash ^ load_le<std::uint32_t>(bytes, at) * prime1, 23) * prime2 + prime3;
         at += 4;
     }
-    for (; at < bytes.size(); ++at) hash = std::rotl(hash ^ bytes[at] * prime5, 11) * prime1;
+    for (; at < bytes.size(); ++at)
+        hash = std::rotl(hash ^ bytes[at] * prime5, 11) * prime1;
     hash = (hash ^ (hash >> 33)) * prime2;
     hash = (hash ^ (hash >> 29)) * prime3;
     return hash ^ (hash >> 32);

@@ -8,8 +8,8 @@ namespace drtv::layout {
 
 inline constexpr std::uint32_t magic = 0x56545244;  // "DRTV"
 inline constexpr std::uint16_t major_version = 1;
-// Of a file with the sections 7 to 9, or some of them; a file without is one of version 1.0, byte for byte. In a file of
-// version 1.0 the kinds 7 to 9 are unused: what they hold there is anything.
+// Of a file with the sections 7 to 9, or some of them; a file without is one of version 1.0, byte for byte.
+// In a file of version 1.0 the kinds 7 to 9 are unused: what they hold there is anything.
 inline constexpr std::uint16_t minor_with_light_sections = 1;
 // Likewise of a file with interiors, or with local transfer of version 2 (filtered).
 inline constexpr std::uint16_t minor_with_interiors = 2;
@@ -22,8 +22,9 @@ inline constexpr std::size_t max_sections = 64;
 inline constexpr std::size_t max_raw_section_bytes = std::size_t{1} << 24;
 
 namespace header {
-inline constexpr std::size_t magic = 0, major = 4, minor = 6, file_bytes = 8, section_count = 12, sector_i = 16,
-                             sector_j = 20, z_origin = 24, probe_count = 28, z_shift = 30, reserved = 31, checksum = 56;
+inline constexpr std::size_t magic = 0, major = 4, minor = 6, file_bytes = 8, section_count = 12,
+                             sector_i = 16, sector_j = 20, z_origin = 24, probe_count = 28, z_shift = 30,
+                             reserved = 31, checksum = 56;
 }
 namespace entry {
 inline constexpr std::size_t kind = 0, version = 2, codec = 4, reserved = 5, offset = 8, stored_bytes = 12,
@@ -31,26 +32,32 @@ inline constexpr std::size_t kind = 0, version = 2, codec = 4, reserved = 5, off
 }
 
 inline constexpr std::size_t bake_bytes = 48;
-inline constexpr std::size_t position_bytes = 8;         // a probe
-inline constexpr std::size_t sky_visibility_bytes = 8;   // a probe
-inline constexpr std::size_t transfer_bytes = 96;        // a probe
+inline constexpr std::size_t position_bytes = 8;        // a probe
+inline constexpr std::size_t sky_visibility_bytes = 8;  // a probe
+inline constexpr std::size_t transfer_bytes = 96;       // a probe
 inline constexpr std::size_t grid_header_bytes = 16;
 inline constexpr std::size_t grid_bytes = grid_header_bytes + 4096;
 inline constexpr std::size_t statistics_bytes = 40;
 
-[[nodiscard]] constexpr std::size_t align(std::size_t offset) { return (offset + alignment - 1) / alignment * alignment; }
+[[nodiscard]] constexpr std::size_t align(std::size_t offset) {
+    return (offset + alignment - 1) / alignment * alignment;
+}
 
 inline constexpr std::size_t light_codes_bytes = 24;  // i16 [3][4]
-inline constexpr std::size_t static_irradiance_bytes = light_codes_bytes + 1;  // a probe; all codes, then all exponents
+inline constexpr std::size_t static_irradiance_bytes =
+    light_codes_bytes + 1;  // a probe; all codes, then all exponents
 inline constexpr std::size_t convergence_bytes = 48;
 
 // Local transfer: header, sources, receivers, masks, codes; each part starts at a multiple of 16.
 struct LocalTransferLayout {
-    static constexpr std::size_t source_count = 0, mask_size = 2, pair_count = 4, reserved = 8, header_bytes = 16;
+    static constexpr std::size_t source_count = 0, mask_size = 2, pair_count = 4, reserved = 8,
+                                 header_bytes = 16;
     static constexpr std::size_t source_bytes = 4, receiver_bytes = 8;
 
     // A row of the matrix receiver x source, a bit a source.
-    [[nodiscard]] static constexpr std::size_t mask_bytes(std::size_t sources) { return sources <= 128 ? 16 : 32; }
+    [[nodiscard]] static constexpr std::size_t mask_bytes(std::size_t sources) {
+        return sources <= 128 ? 16 : 32;
+    }
 
     std::size_t sources_end, receivers, receivers_end, masks, codes, end;
 
@@ -63,35 +70,50 @@ struct LocalTransferLayout {
           end(codes + pairs * light_codes_bytes) {}
 
     // Behind the codes of a filtered section: 26 bytes a pair, not 24.
-    [[nodiscard]] constexpr std::size_t filtered_end(std::size_t pairs) const { return codes + pairs * filtered_pair_bytes; }
+    [[nodiscard]] constexpr std::size_t filtered_end(std::size_t pairs) const {
+        return codes + pairs * filtered_pair_bytes;
+    }
     static constexpr std::size_t filtered_pair_bytes = 2 + light_codes_bytes;
 
-    [[nodiscard]] static constexpr std::size_t source_at(std::size_t s) { return header_bytes + s * source_bytes; }
-    [[nodiscard]] constexpr std::size_t receiver_at(std::size_t p) const { return receivers + p * receiver_bytes; }
+    [[nodiscard]] static constexpr std::size_t source_at(std::size_t s) {
+        return header_bytes + s * source_bytes;
+    }
+    [[nodiscard]] constexpr std::size_t receiver_at(std::size_t p) const {
+        return receivers + p * receiver_bytes;
+    }
     [[nodiscard]] constexpr std::size_t pair_at(std::size_t n) const { return codes + n * light_codes_bytes; }
 };
 
-// Interiors: header, one entry an interior, all vertices, all triangles; each part starts at a multiple of 16.
+// Interiors: header, one entry an interior, all vertices, all triangles; each part starts at a multiple
+// of 16.
 struct InteriorsLayout {
-    static constexpr std::size_t interior_count = 0, reserved = 2, vertex_count = 4, triangle_count = 8, reserved2 = 12, header_bytes = 16;
+    static constexpr std::size_t interior_count = 0, reserved = 2, vertex_count = 4, triangle_count = 8,
+                                 reserved2 = 12, header_bytes = 16;
     static constexpr std::size_t entry_bytes = 32, vertex_bytes = 6, triangle_bytes = 6;
     // Within an entry.
-    static constexpr std::size_t origin = 0, shift = 12, probe = 13, entry_reserved = 14, first_vertex = 16, vertices_of = 20, first_triangle = 24, triangles_of = 28;
+    static constexpr std::size_t origin = 0, shift = 12, probe = 13, entry_reserved = 14, first_vertex = 16,
+                                 vertices_of = 20, first_triangle = 24, triangles_of = 28;
 
     std::size_t vertices, vertices_end, triangles, end;
 
-    constexpr InteriorsLayout(std::size_t interior_count_, std::size_t vertex_count_, std::size_t triangle_count_)
+    constexpr InteriorsLayout(std::size_t interior_count_,
+                              std::size_t vertex_count_,
+                              std::size_t triangle_count_)
         : vertices(header_bytes + interior_count_ * entry_bytes),
           vertices_end(vertices + vertex_count_ * vertex_bytes),
           triangles(align(vertices_end)),
           end(triangles + triangle_count_ * triangle_bytes) {}
 
-    [[nodiscard]] static constexpr std::size_t entry_at(std::size_t n) { return header_bytes + n * entry_bytes; }
-    [[nodiscard]] constexpr std::size_t triangle_at(std::size_t n) const { return triangles + n * triangle_bytes; }
+    [[nodiscard]] static constexpr std::size_t entry_at(std::size_t n) {
+        return header_bytes + n * entry_bytes;
+    }
+    [[nodiscard]] constexpr std::size_t triangle_at(std::size_t n) const {
+        return triangles + n * triangle_bytes;
+    }
 };
 
-// Where the values of a section lie in the file. Inside a compressed section no byte stands for one value: the
-// section's first byte has to do.
+// Where the values of a section lie in the file. Inside a compressed section no byte stands for one value:
+// the section's first byte has to do.
 struct Place {
     std::uint64_t start = 0;
     bool raw = true;

@@ -25,10 +25,12 @@ void read_probes(const Sections& sections, std::vector<Probe>& probes) {
     const Bytes positions = sections.of(SectionKind::positions).raw;
     std::size_t position_at = 0, visibility_at = 0, transfer_at = 0;
     for (Probe& probe : probes) {
-        for (std::size_t axis = 0; axis < 3; ++axis) probe.position[axis] = load_le<std::uint16_t>(positions, position_at + 2 * axis);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            probe.position[axis] = load_le<std::uint16_t>(positions, position_at + 2 * axis);
         probe.kind = static_cast<ProbeKind>(positions[position_at + 6]);
         position_at += layout::position_bytes;
-        visibility_at = load_codes(sections.of(SectionKind::sky_visibility).raw, visibility_at, probe.sky_visibility);
+        visibility_at =
+            load_codes(sections.of(SectionKind::sky_visibility).raw, visibility_at, probe.sky_visibility);
         transfer_at = load_codes(sections.of(SectionKind::transfer).raw, transfer_at, probe.transfer);
     }
 }
@@ -54,8 +56,10 @@ Statistics read_statistics(Bytes raw) {
 
 void read_static_irradiance(Bytes raw, std::vector<StaticIrradiance>& probes) {
     std::size_t at = 0;
-    for (StaticIrradiance& probe : probes) at = load_codes(raw, at, probe.codes);
-    for (StaticIrradiance& probe : probes) probe.exponent = static_cast<std::int8_t>(raw[at++]);
+    for (StaticIrradiance& probe : probes)
+        at = load_codes(raw, at, probe.codes);
+    for (StaticIrradiance& probe : probes)
+        probe.exponent = static_cast<std::int8_t>(raw[at++]);
 }
 
 void read_local_transfer(Bytes raw, std::size_t probe_count, LocalTransfer& local) {
@@ -67,7 +71,10 @@ void read_local_transfer(Bytes raw, std::size_t probe_count, LocalTransfer& loca
     const std::size_t mask_bytes = Local::mask_bytes(local.sources.size());
     for (std::size_t s = 0; s < local.sources.size(); ++s) {
         const std::size_t at = Local::source_at(s);
-        local.sources[s] = {static_cast<std::int8_t>(raw[at]), static_cast<std::int8_t>(raw[at + 1]), raw[at + 2], static_cast<std::int8_t>(raw[at + 3])};
+        local.sources[s] = {static_cast<std::int8_t>(raw[at]),
+                            static_cast<std::int8_t>(raw[at + 1]),
+                            raw[at + 2],
+                            static_cast<std::int8_t>(raw[at + 3])};
     }
     for (std::size_t p = 0; p < probe_count; ++p) {
         local.receivers[p].first_pair = load_le<std::uint32_t>(raw, parts.receiver_at(p));
@@ -75,7 +82,8 @@ void read_local_transfer(Bytes raw, std::size_t probe_count, LocalTransfer& loca
         std::memcpy(local.receivers[p].sources.data(), raw.data() + parts.masks + p * mask_bytes, mask_bytes);
     }
     std::size_t at = parts.codes;
-    for (LightCodes& pair : local.pairs) at = load_codes(raw, at, pair);
+    for (LightCodes& pair : local.pairs)
+        at = load_codes(raw, at, pair);
 }
 
 Convergence read_convergence(Bytes raw) {
@@ -97,21 +105,25 @@ Convergence read_convergence(Bytes raw) {
 void read_interiors(Bytes raw, std::vector<Interior>& interiors) {
     using Rooms = layout::InteriorsLayout;
     interiors.resize(load_le<std::uint16_t>(raw, Rooms::interior_count));
-    const Rooms parts(interiors.size(), load_le<std::uint32_t>(raw, Rooms::vertex_count), load_le<std::uint32_t>(raw, Rooms::triangle_count));
+    const Rooms parts(interiors.size(),
+                      load_le<std::uint32_t>(raw, Rooms::vertex_count),
+                      load_le<std::uint32_t>(raw, Rooms::triangle_count));
     std::size_t vertex_at = parts.vertices, triangle_at = parts.triangles;
-    const auto read_triples = [&](std::size_t& at, std::size_t count, std::vector<std::array<std::uint16_t, 3>>& triples) {
-        triples.resize(count);
-        for (auto& triple : triples) {
-            for (std::uint16_t& value : triple) {
-                value = load_le<std::uint16_t>(raw, at);
-                at += sizeof value;
+    const auto read_triples =
+        [&](std::size_t& at, std::size_t count, std::vector<std::array<std::uint16_t, 3>>& triples) {
+            triples.resize(count);
+            for (auto& triple : triples) {
+                for (std::uint16_t& value : triple) {
+                    value = load_le<std::uint16_t>(raw, at);
+                    at += sizeof value;
+                }
             }
-        }
-    };
+        };
     for (std::size_t n = 0; n < interiors.size(); ++n) {
         const std::size_t at = Rooms::entry_at(n);
         Interior& interior = interiors[n];
-        for (std::size_t axis = 0; axis < 3; ++axis) interior.origin_units[axis] = load_i32(raw, at + Rooms::origin + 4 * axis);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            interior.origin_units[axis] = load_i32(raw, at + Rooms::origin + 4 * axis);
         interior.shift = raw[at + Rooms::shift];
         interior.probe = raw[at + Rooms::probe];
         read_triples(vertex_at, load_le<std::uint32_t>(raw, at + Rooms::vertices_of), interior.vertices);
@@ -136,16 +148,20 @@ void copy_sector(Bytes file, const Sections& sections, Sector& sector) {
         sector.static_irradiance.resize(sections.probe_count);
         read_static_irradiance(section.raw, sector.static_irradiance);
     }
-    if (const Section& section = sections.of(SectionKind::local_transfer); section.present) read_local_transfer(section.raw, sections.probe_count, sector.local_transfer.emplace());
-    if (const Section& section = sections.of(SectionKind::convergence); section.present) sector.convergence = read_convergence(section.raw);
-    if (const Section& section = sections.of(SectionKind::interiors); section.present) read_interiors(section.raw, sector.interiors);
+    if (const Section& section = sections.of(SectionKind::local_transfer); section.present)
+        read_local_transfer(section.raw, sections.probe_count, sector.local_transfer.emplace());
+    if (const Section& section = sections.of(SectionKind::convergence); section.present)
+        sector.convergence = read_convergence(section.raw);
+    if (const Section& section = sections.of(SectionKind::interiors); section.present)
+        read_interiors(section.raw, sector.interiors);
 }
 
 ReadStatus read_sector(Bytes bytes, Sector& sector) {
     SectionTable table;
     Unpacked unpacked;
     Sections sections;
-    if (ReadStatus status = load_sections(bytes, table, &unpacked, sections); !status.ok()) return status;
+    if (ReadStatus status = load_sections(bytes, table, &unpacked, sections); !status.ok())
+        return status;
     Sector read;
     copy_sector(bytes, sections, read);
     sector = std::move(read);

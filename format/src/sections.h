@@ -28,15 +28,20 @@ struct Sections {
     std::size_t probe_count = 0;
     std::array<Section, known_kinds> of_kind;
 
-    [[nodiscard]] const Section& of(SectionKind kind) const { return of_kind[static_cast<std::size_t>(kind)]; }
+    [[nodiscard]] const Section& of(SectionKind kind) const {
+        return of_kind[static_cast<std::size_t>(kind)];
+    }
 };
 
 // Where the decoded bytes of compressed sections lie.
 using Unpacked = std::array<std::vector<std::uint8_t>, known_kinds>;
 
-// Checks the whole file by SPEC.md section 6, and gives its table too. With `unpacked` null, a compressed section fails. Allocates for compressed
-// sections and for messages only.
-ReadStatus load_sections(std::span<const std::uint8_t> file, SectionTable& table, Unpacked* unpacked, Sections& sections);
+// Checks the whole file by SPEC.md section 6, and gives its table too. With `unpacked` null, a compressed
+// section fails. Allocates for compressed sections and for messages only.
+ReadStatus load_sections(std::span<const std::uint8_t> file,
+                         SectionTable& table,
+                         Unpacked* unpacked,
+                         Sections& sections);
 
 // The sector that they hold. REQUIRES: load_sections gave them for this file.
 void copy_sector(std::span<const std::uint8_t> file, const Sections& sections, Sector& sector);

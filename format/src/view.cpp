@@ -10,8 +10,8 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-// `count` elements that stand at `offset`, which the section's rules say are there. Types of this file have the layout of the
-// bytes, offsets are multiples of their alignment.
+// `count` elements that stand at `offset`, which the section's rules say are there. Types of this file have
+// the layout of the bytes, offsets are multiples of their alignment.
 template <class Element>
 std::span<const Element> elements(Bytes raw, std::size_t offset, std::size_t count) {
     return {reinterpret_cast<const Element*>(raw.data() + offset), count};
@@ -19,7 +19,8 @@ std::span<const Element> elements(Bytes raw, std::size_t offset, std::size_t cou
 
 void view_local_transfer(Bytes raw, std::size_t probe_count, SectorView& view) {
     using Local = layout::LocalTransferLayout;
-    const std::size_t sources = load_le<std::uint16_t>(raw, Local::source_count), pairs = load_le<std::uint32_t>(raw, Local::pair_count);
+    const std::size_t sources = load_le<std::uint16_t>(raw, Local::source_count),
+                      pairs = load_le<std::uint32_t>(raw, Local::pair_count);
     const Local parts(probe_count, sources, pairs);
     view.local_sources = elements<LocalSource>(raw, Local::header_bytes, sources);
     view.local_receivers = elements<StoredReceiver>(raw, parts.receivers, probe_count);
@@ -30,7 +31,8 @@ void view_local_transfer(Bytes raw, std::size_t probe_count, SectorView& view) {
 
 void view_interiors(Bytes raw, SectorView& view) {
     using Rooms = layout::InteriorsLayout;
-    const std::size_t count = load_le<std::uint16_t>(raw, Rooms::interior_count), vertices = load_le<std::uint32_t>(raw, Rooms::vertex_count),
+    const std::size_t count = load_le<std::uint16_t>(raw, Rooms::interior_count),
+                      vertices = load_le<std::uint32_t>(raw, Rooms::vertex_count),
                       triangles = load_le<std::uint32_t>(raw, Rooms::triangle_count);
     const Rooms parts(count, vertices, triangles);
     view.interiors = elements<StoredInterior>(raw, Rooms::header_bytes, count);
@@ -44,7 +46,8 @@ ReadStatus open_sector(Bytes bytes, SectorView& view) {
     namespace h = layout::header;
     SectionTable table;
     Sections sections;
-    if (ReadStatus status = load_sections(bytes, table, nullptr, sections); !status.ok()) return status;
+    if (ReadStatus status = load_sections(bytes, table, nullptr, sections); !status.ok())
+        return status;
     if (reinterpret_cast<std::uintptr_t>(bytes.data()) % layout::alignment != 0) {
         return {ReadError::misaligned, 0, "the file's bytes do not start at a multiple of 16 in memory"};
     }
@@ -63,8 +66,10 @@ ReadStatus open_sector(Bytes bytes, SectorView& view) {
         v.static_irradiance = elements<LightCodes>(section.raw, 0, count);
         v.static_exponents = elements<std::int8_t>(section.raw, count * layout::light_codes_bytes, count);
     }
-    if (const Section& section = sections.of(SectionKind::local_transfer); section.present) view_local_transfer(section.raw, count, v);
-    if (const Section& section = sections.of(SectionKind::interiors); section.present) view_interiors(section.raw, v);
+    if (const Section& section = sections.of(SectionKind::local_transfer); section.present)
+        view_local_transfer(section.raw, count, v);
+    if (const Section& section = sections.of(SectionKind::interiors); section.present)
+        view_interiors(section.raw, v);
     view = v;
     return {};
 }
@@ -72,7 +77,8 @@ ReadStatus open_sector(Bytes bytes, SectorView& view) {
 ReadStatus unpack_sector(Bytes bytes, std::vector<std::uint8_t>& raw_file) {
     Sector sector;
     ReadStatus status = read_sector(bytes, sector);
-    if (status.ok()) raw_file = write_sector(sector);
+    if (status.ok())
+        raw_file = write_sector(sector);
     return status;
 }
 

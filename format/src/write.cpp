@@ -16,8 +16,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// High enough to be worth the time once, low enough to stay under a millisecond a sector. Local transfer is most of a file that
-// has it: from level 15 on zstd gives each stretch of it its own statistics.
+// High enough to be worth the time once, low enough to stay under a millisecond a sector. Local transfer is
+// most of a file that has it: from level 15 on zstd gives each stretch of it its own statistics.
 constexpr int zstd_level = 12, zstd_level_of_local_transfer = 15;
 
 Bytes bake_section(const BakeRecord& bake) {
@@ -33,7 +33,8 @@ Bytes bake_section(const BakeRecord& bake) {
 Bytes positions_section(const std::vector<Probe>& probes) {
     Bytes bytes;
     for (const Probe& probe : probes) {
-        for (std::uint16_t axis : probe.position) append_le(bytes, axis);
+        for (std::uint16_t axis : probe.position)
+            append_le(bytes, axis);
         bytes.push_back(static_cast<std::uint8_t>(probe.kind));
         bytes.push_back(0);
     }
@@ -42,13 +43,15 @@ Bytes positions_section(const std::vector<Probe>& probes) {
 
 Bytes sky_visibility_section(const std::vector<Probe>& probes) {
     Bytes bytes;
-    for (const Probe& probe : probes) append_codes(bytes, probe.sky_visibility);
+    for (const Probe& probe : probes)
+        append_codes(bytes, probe.sky_visibility);
     return bytes;
 }
 
 Bytes transfer_section(const std::vector<Probe>& probes) {
     Bytes bytes;
-    for (const Probe& probe : probes) append_codes(bytes, probe.transfer);
+    for (const Probe& probe : probes)
+        append_codes(bytes, probe.transfer);
     return bytes;
 }
 
@@ -63,7 +66,8 @@ Bytes grid_section(const Grid& grid) {
 
 Bytes statistics_section(const Statistics& s) {
     Bytes bytes;
-    for (std::uint32_t n : {s.candidates, s.moved_out, s.dropped_in_solid, s.removed_by_volume, s.thinned}) append_le(bytes, n);
+    for (std::uint32_t n : {s.candidates, s.moved_out, s.dropped_in_solid, s.removed_by_volume, s.thinned})
+        append_le(bytes, n);
     append_f32(bytes, s.used_distance_m);
     append_le(bytes, s.rays);
     append_le(bytes, s.back_hits);
@@ -72,8 +76,10 @@ Bytes statistics_section(const Statistics& s) {
 
 Bytes static_irradiance_section(const std::vector<StaticIrradiance>& probes) {
     Bytes bytes;
-    for (const StaticIrradiance& probe : probes) append_codes(bytes, probe.codes);
-    for (const StaticIrradiance& probe : probes) bytes.push_back(static_cast<std::uint8_t>(probe.exponent));
+    for (const StaticIrradiance& probe : probes)
+        append_codes(bytes, probe.codes);
+    for (const StaticIrradiance& probe : probes)
+        bytes.push_back(static_cast<std::uint8_t>(probe.exponent));
     return bytes;
 }
 
@@ -100,16 +106,21 @@ Bytes local_transfer_section(const LocalTransfer& local) {
     }
     bytes.resize(parts.masks, 0);
     for (const LocalReceiver& receiver : local.receivers) {
-        bytes.insert(bytes.end(), receiver.sources.begin(), receiver.sources.begin() + static_cast<std::ptrdiff_t>(mask_bytes));
+        bytes.insert(bytes.end(),
+                     receiver.sources.begin(),
+                     receiver.sources.begin() + static_cast<std::ptrdiff_t>(mask_bytes));
     }
-    for (const LightCodes& pair : local.pairs) append_codes(bytes, pair);
+    for (const LightCodes& pair : local.pairs)
+        append_codes(bytes, pair);
     return bytes;
 }
 
 Bytes convergence_section(const Convergence& c) {
     Bytes bytes;
-    for (float error : {c.error_asked, c.error_median, c.error_p95, c.error_max}) append_f32(bytes, error);
-    for (std::uint32_t n : {c.paths_least, c.paths_most, c.local_bounces, c.local_rays}) append_le(bytes, n);
+    for (float error : {c.error_asked, c.error_median, c.error_p95, c.error_max})
+        append_f32(bytes, error);
+    for (std::uint32_t n : {c.paths_least, c.paths_most, c.local_bounces, c.local_rays})
+        append_le(bytes, n);
     append_le(bytes, c.static_rays);
     append_le(bytes, c.local_transfer_rays);
     return bytes;
@@ -132,22 +143,27 @@ Bytes interiors_section(const std::vector<Interior>& interiors) {
     append_le(bytes, std::uint32_t{0});
     vertices = triangles = 0;
     for (const Interior& interior : interiors) {
-        for (const std::int32_t origin : interior.origin_units) append_le(bytes, static_cast<std::uint32_t>(origin));
+        for (const std::int32_t origin : interior.origin_units)
+            append_le(bytes, static_cast<std::uint32_t>(origin));
         append_le(bytes, interior.shift);
         append_le(bytes, interior.probe);
         append_le(bytes, std::uint16_t{0});
-        for (const std::size_t n : {vertices, interior.vertices.size(), triangles, interior.triangles.size()}) append_le(bytes, static_cast<std::uint32_t>(n));
+        for (const std::size_t n : {vertices, interior.vertices.size(), triangles, interior.triangles.size()})
+            append_le(bytes, static_cast<std::uint32_t>(n));
         vertices += interior.vertices.size();
         triangles += interior.triangles.size();
     }
     const auto append_triples = [&](const std::vector<std::array<std::uint16_t, 3>>& triples) {
         for (const auto& triple : triples) {
-            for (const std::uint16_t value : triple) append_le(bytes, value);
+            for (const std::uint16_t value : triple)
+                append_le(bytes, value);
         }
     };
-    for (const Interior& interior : interiors) append_triples(interior.vertices);
+    for (const Interior& interior : interiors)
+        append_triples(interior.vertices);
     bytes.resize(parts.triangles, 0);
-    for (const Interior& interior : interiors) append_triples(interior.triangles);
+    for (const Interior& interior : interiors)
+        append_triples(interior.triangles);
     return bytes;
 }
 
@@ -171,13 +187,17 @@ StoredSection store_section(SectionKind kind, Bytes raw, Codec codec, std::size_
     section.entry.raw_bytes = static_cast<std::uint32_t>(raw.size());
     if (codec == Codec::zstd && !raw.empty()) {
         const bool filtered = kind == SectionKind::local_transfer;
-        section.bytes = filtered ? pack(filter_local(raw, probe_count), zstd_level_of_local_transfer, raw.size()) : pack(raw, zstd_level, raw.size());
+        section.bytes = filtered
+                            ? pack(filter_local(raw, probe_count), zstd_level_of_local_transfer, raw.size())
+                            : pack(raw, zstd_level, raw.size());
         if (!section.bytes.empty()) {
             section.entry.codec = static_cast<std::uint8_t>(filtered ? Codec::filtered : Codec::zstd);
-            if (filtered) section.entry.version = layout::filtered_local_version;
+            if (filtered)
+                section.entry.version = layout::filtered_local_version;
         }
     }
-    if (section.bytes.empty()) section.bytes = std::move(raw);
+    if (section.bytes.empty())
+        section.bytes = std::move(raw);
     section.entry.stored_bytes = static_cast<std::uint32_t>(section.bytes.size());
     section.entry.checksum = xxh64(section.bytes);
     return section;
@@ -188,8 +208,10 @@ std::uint16_t minor_version(const std::vector<StoredSection>& sections) {
     std::uint16_t minor = 0;
     for (const StoredSection& section : sections) {
         const auto kind = static_cast<SectionKind>(section.entry.kind);
-        if (kind >= SectionKind::static_irradiance) minor = std::max(minor, layout::minor_with_light_sections);
-        if (kind == SectionKind::interiors || section.entry.version == layout::filtered_local_version) minor = std::max(minor, layout::minor_with_interiors);
+        if (kind >= SectionKind::static_irradiance)
+            minor = std::max(minor, layout::minor_with_light_sections);
+        if (kind == SectionKind::interiors || section.entry.version == layout::filtered_local_version)
+            minor = std::max(minor, layout::minor_with_interiors);
     }
     return minor;
 }
@@ -210,23 +232,31 @@ void append_entry(Bytes& bytes, const SectionEntry& entry) {
 
 std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions& options) {
     assert(sector.probes.size() <= max_probes && sector.z_shift <= max_z_shift);
-    assert(std::abs(std::int64_t{sector.i}) <= max_sector_coordinate && std::abs(std::int64_t{sector.j}) <= max_sector_coordinate);
+    assert(std::abs(std::int64_t{sector.i}) <= max_sector_coordinate &&
+           std::abs(std::int64_t{sector.j}) <= max_sector_coordinate);
     assert(std::abs(std::int64_t{sector.z_origin_units}) <= max_z_origin_units);
     assert(sector.static_irradiance.empty() || sector.static_irradiance.size() == sector.probes.size());
-    assert(!sector.local_transfer || (sector.local_transfer->receivers.size() == sector.probes.size() && sector.local_transfer->sources.size() <= max_probes));
+    assert(!sector.local_transfer || (sector.local_transfer->receivers.size() == sector.probes.size() &&
+                                      sector.local_transfer->sources.size() <= max_probes));
     assert(sector.interiors.size() <= max_interiors);
     std::vector<StoredSection> sections;
-    const auto add = [&](SectionKind kind, Bytes raw) { sections.push_back(store_section(kind, std::move(raw), options.codec, sector.probes.size())); };
+    const auto add = [&](SectionKind kind, Bytes raw) {
+        sections.push_back(store_section(kind, std::move(raw), options.codec, sector.probes.size()));
+    };
     add(SectionKind::bake, bake_section(sector.bake));
     add(SectionKind::positions, positions_section(sector.probes));
     add(SectionKind::sky_visibility, sky_visibility_section(sector.probes));
     add(SectionKind::transfer, transfer_section(sector.probes));
     add(SectionKind::grid, grid_section(sector.grid));
     add(SectionKind::statistics, statistics_section(sector.statistics));
-    if (!sector.static_irradiance.empty()) add(SectionKind::static_irradiance, static_irradiance_section(sector.static_irradiance));
-    if (sector.local_transfer) add(SectionKind::local_transfer, local_transfer_section(*sector.local_transfer));
-    if (sector.convergence) add(SectionKind::convergence, convergence_section(*sector.convergence));
-    if (!sector.interiors.empty()) add(SectionKind::interiors, interiors_section(sector.interiors));
+    if (!sector.static_irradiance.empty())
+        add(SectionKind::static_irradiance, static_irradiance_section(sector.static_irradiance));
+    if (sector.local_transfer)
+        add(SectionKind::local_transfer, local_transfer_section(*sector.local_transfer));
+    if (sector.convergence)
+        add(SectionKind::convergence, convergence_section(*sector.convergence));
+    if (!sector.interiors.empty())
+        add(SectionKind::interiors, interiors_section(sector.interiors));
 
     std::size_t end = layout::header_bytes + sections.size() * layout::entry_bytes;
     for (StoredSection& section : sections) {
@@ -235,7 +265,8 @@ std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions&
     }
 
     Bytes table;
-    for (const StoredSection& section : sections) append_entry(table, section.entry);
+    for (const StoredSection& section : sections)
+        append_entry(table, section.entry);
 
     Bytes file;
     file.reserve(end);

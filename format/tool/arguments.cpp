@@ -15,7 +15,8 @@ bool parse_whole(const std::string& text, Number& number) {
 std::string plain(double number) {
     std::string text = std::to_string(number);
     text.erase(text.find_last_not_of('0') + 1);
-    if (text.ends_with('.')) text.pop_back();
+    if (text.ends_with('.'))
+        text.pop_back();
     return text;
 }
 
@@ -31,7 +32,9 @@ std::vector<std::string> split_list(const std::string& list) {
     return parts;
 }
 
-std::optional<ParsedArguments> ParsedArguments::parse(std::string_view command, Arguments arguments, std::initializer_list<Option> options) {
+std::optional<ParsedArguments> ParsedArguments::parse(std::string_view command,
+                                                      Arguments arguments,
+                                                      std::initializer_list<Option> options) {
     ParsedArguments parsed;
     parsed.command_ = command;
     for (std::size_t n = 0; n < arguments.size(); ++n) {
@@ -64,19 +67,30 @@ std::vector<std::string> ParsedArguments::all(std::string_view option) const {
     return found == values_.end() ? std::vector<std::string>() : found->second;
 }
 
-std::optional<std::size_t> ParsedArguments::count(std::string_view option, std::size_t least, std::size_t most, std::size_t otherwise) const {
-    if (!has(option)) return otherwise;
+std::optional<std::size_t> ParsedArguments::count(std::string_view option,
+                                                  std::size_t least,
+                                                  std::size_t most,
+                                                  std::size_t otherwise) const {
+    if (!has(option))
+        return otherwise;
     std::size_t number = 0;
-    if (parse_whole(value(option), number) && number >= least && number <= most) return number;
-    complain(command_ + ": " + std::string(option) + " takes a number from " + std::to_string(least) + " to " + std::to_string(most) + ", not \"" + value(option) + "\"");
+    if (parse_whole(value(option), number) && number >= least && number <= most)
+        return number;
+    complain(command_ + ": " + std::string(option) + " takes a number from " + std::to_string(least) +
+             " to " + std::to_string(most) + ", not \"" + value(option) + "\"");
     return std::nullopt;
 }
 
-std::optional<double> ParsedArguments::positive(std::string_view option, double most, double otherwise) const {
-    if (!has(option)) return otherwise;
+std::optional<double> ParsedArguments::positive(std::string_view option,
+                                                double most,
+                                                double otherwise) const {
+    if (!has(option))
+        return otherwise;
     double number = 0;
-    if (parse_whole(value(option), number) && number > 0 && number < most) return number;
-    complain(command_ + ": " + std::string(option) + " takes a number between 0 and " + plain(most) + ", not \"" + value(option) + "\"");
+    if (parse_whole(value(option), number) && number > 0 && number < most)
+        return number;
+    complain(command_ + ": " + std::string(option) + " takes a number between 0 and " + plain(most) +
+             ", not \"" + value(option) + "\"");
     return std::nullopt;
 }
 

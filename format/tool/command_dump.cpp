@@ -10,7 +10,9 @@ namespace drtv::tool {
 namespace {
 
 // Heights and positions are whole numbers of 2^-10 m, which a double holds exactly wherever a sector can lie.
-double metres(std::int64_t units) { return static_cast<double>(units) / position_units_per_m; }
+double metres(std::int64_t units) {
+    return static_cast<double>(units) / position_units_per_m;
+}
 
 std::string hex(const std::array<std::uint8_t, 32>& bytes) {
     static constexpr char digits[] = "0123456789abcdef";
@@ -22,12 +24,15 @@ std::string hex(const std::array<std::uint8_t, 32>& bytes) {
     return text;
 }
 
-void append_codes(JsonWriter& json, std::int16_t code, float scale) { json.value(decode_fixed(code, scale)); }
+void append_codes(JsonWriter& json, std::int16_t code, float scale) {
+    json.value(decode_fixed(code, scale));
+}
 
 template <class Element, std::size_t count>
 void append_codes(JsonWriter& json, const std::array<Element, count>& codes, float scale) {
     json.begin_array();
-    for (const Element& element : codes) append_codes(json, element, scale);
+    for (const Element& element : codes)
+        append_codes(json, element, scale);
     json.end_array();
 }
 
@@ -36,9 +41,15 @@ void append_local(JsonWriter& json, const Sector& sector, const LocalReceiver& r
     json.key("local").begin_array();
     std::size_t pair = receiver.first_pair;
     for (std::size_t s = 0; s < local.sources.size(); ++s) {
-        if (!has_pair(receiver, s)) continue;
+        if (!has_pair(receiver, s))
+            continue;
         const LocalSource& source = local.sources[s];
-        json.begin_object().key("sector").begin_array().value(sector.i + source.di).value(sector.j + source.dj).end_array();
+        json.begin_object()
+            .key("sector")
+            .begin_array()
+            .value(sector.i + source.di)
+            .value(sector.j + source.dj)
+            .end_array();
         json.key("probe").value(unsigned{source.probe}).key("coefficients");
         append_codes(json, local.pairs[pair++], scale_of_exponent(receiver.exponent + source.exponent));
         json.end_object();
@@ -50,7 +61,8 @@ void append_probe(JsonWriter& json, const Sector& sector, std::size_t p) {
     const Probe& probe = sector.probes[p];
     json.begin_object();
     json.key("position").begin_array();
-    for (std::int32_t units : position_units(sector, probe)) json.value(metres(units));
+    for (std::int32_t units : position_units(sector, probe))
+        json.value(metres(units));
     json.end_array();
     json.key("kind").value(name_of(probe.kind));
     json.key("transfer");
@@ -59,9 +71,11 @@ void append_probe(JsonWriter& json, const Sector& sector, std::size_t p) {
     append_codes(json, probe.sky_visibility, sky_visibility_scale);
     if (!sector.static_irradiance.empty()) {
         json.key("static_irradiance");
-        append_codes(json, sector.static_irradiance[p].codes, scale_of_exponent(sector.static_irradiance[p].exponent));
+        append_codes(
+            json, sector.static_irradiance[p].codes, scale_of_exponent(sector.static_irradiance[p].exponent));
     }
-    if (sector.local_transfer) append_local(json, sector, sector.local_transfer->receivers[p]);
+    if (sector.local_transfer)
+        append_local(json, sector, sector.local_transfer->receivers[p]);
     json.end_object();
 }
 
@@ -73,20 +87,26 @@ void append_settings(JsonWriter& json, const BakeRecord& bake) {
 }
 
 void append_grid(JsonWriter& json, const Sector& sector) {
-    const std::array<double, 3> origin = {double{sector_size_m} * sector.i, double{sector_size_m} * sector.j, metres(sector.grid.z_origin_units)};
+    const std::array<double, 3> origin = {double{sector_size_m} * sector.i,
+                                          double{sector_size_m} * sector.j,
+                                          metres(sector.grid.z_origin_units)};
     constexpr double cell_width_m = double{sector_size_m} / grid_size;
     const std::array<double, 3> cell = {cell_width_m, cell_width_m, metres(sector.grid.cell_height_units)};
     json.key("grid").begin_object().key("origin").array(origin).key("cell").array(cell);
     json.key("size").begin_array().value(16).value(16).value(16).end_array();
     json.key("cells").begin_array();
-    for (std::uint8_t probe : sector.grid.cells) json.value(unsigned{probe});
+    for (std::uint8_t probe : sector.grid.cells)
+        json.value(unsigned{probe});
     json.end_array().end_object();
 }
 
 void append_statistics(JsonWriter& json, const Statistics& s) {
     json.key("statistics").begin_object();
     json.key("candidates").value(s.candidates).key("moved_out").value(s.moved_out);
-    json.key("dropped_in_solid").value(s.dropped_in_solid).key("removed_by_volume").value(s.removed_by_volume);
+    json.key("dropped_in_solid")
+        .value(s.dropped_in_solid)
+        .key("removed_by_volume")
+        .value(s.removed_by_volume);
     json.key("thinned").value(s.thinned).key("used_distance").value(s.used_distance_m);
     json.key("rays").value(s.rays).key("back_hits").value(s.back_hits).end_object();
 }
@@ -97,7 +117,11 @@ void append_convergence(JsonWriter& json, const Convergence& c) {
     json.key("error_p95").value(c.error_p95).key("error_max").value(c.error_max);
     json.key("paths_least").value(c.paths_least).key("paths_most").value(c.paths_most);
     json.key("local_bounces").value(c.local_bounces).key("local_rays").value(c.local_rays);
-    json.key("static_rays").value(c.static_rays).key("local_transfer_rays").value(c.local_transfer_rays).end_object();
+    json.key("static_rays")
+        .value(c.static_rays)
+        .key("local_transfer_rays")
+        .value(c.local_transfer_rays)
+        .end_object();
 }
 
 void append_interiors(JsonWriter& json, const Sector& sector) {
@@ -106,13 +130,16 @@ void append_interiors(JsonWriter& json, const Sector& sector) {
         json.begin_object().key("probe").value(unsigned{interior.probe}).key("vertices").begin_array();
         for (const auto& vertex : interior.vertices) {
             json.begin_array();
-            for (std::size_t axis = 0; axis < 3; ++axis) json.value(metres(interior.origin_units[axis] + (std::int64_t{vertex[axis]} << interior.shift)));
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                json.value(
+                    metres(interior.origin_units[axis] + (std::int64_t{vertex[axis]} << interior.shift)));
             json.end_array();
         }
         json.end_array().key("triangles").begin_array();
         for (const auto& triangle : interior.triangles) {
             json.begin_array();
-            for (const std::uint16_t vertex : triangle) json.value(unsigned{vertex});
+            for (const std::uint16_t vertex : triangle)
+                json.value(unsigned{vertex});
             json.end_array();
         }
         json.end_array().end_object();
@@ -124,7 +151,8 @@ void append_interiors(JsonWriter& json, const Sector& sector) {
 
 int run_dump(Arguments arguments) {
     const auto parsed = ParsedArguments::parse("dump", arguments, {{"--json"}});
-    if (!parsed) return exit_usage;
+    if (!parsed)
+        return exit_usage;
     if (!parsed->has("--json") || parsed->positional.size() != 1) {
         complain("usage is: drtv dump FILE --json");
         return exit_usage;
@@ -133,19 +161,23 @@ int run_dump(Arguments arguments) {
     int exit_code = exit_valid;
     std::vector<std::uint8_t> bytes;
     const std::optional<Sector> loaded = load_sector(path, exit_code, &bytes);
-    if (!loaded) return exit_code;
+    if (!loaded)
+        return exit_code;
     const Sector& sector = *loaded;
     JsonWriter json;
     json.begin_object().key("format_version").value(format_version(bytes));
     json.key("sector").begin_array().value(sector.i).value(sector.j).end_array();
     append_settings(json, sector.bake);
     json.key("probes").begin_array();
-    for (std::size_t p = 0; p < sector.probes.size(); ++p) append_probe(json, sector, p);
+    for (std::size_t p = 0; p < sector.probes.size(); ++p)
+        append_probe(json, sector, p);
     json.end_array();
     append_grid(json, sector);
-    if (!sector.interiors.empty()) append_interiors(json, sector);
+    if (!sector.interiors.empty())
+        append_interiors(json, sector);
     append_statistics(json, sector.statistics);
-    if (sector.convergence) append_convergence(json, *sector.convergence);
+    if (sector.convergence)
+        append_convergence(json, *sector.convergence);
     json.end_object();
     std::puts(json.text().c_str());
     return exit_valid;

@@ -13,8 +13,13 @@ namespace {
 void print_sections(const std::vector<SectionEntry>& entries) {
     std::printf("sections\n");
     for (const SectionEntry& entry : entries) {
-        std::printf("  %-17s %6u bytes%s\n", std::string(name_of_section(entry.kind)).c_str(), entry.raw_bytes,
-                    entry.codec == 0 ? "" : (", zstd " + std::to_string(entry.stored_bytes) + (entry.codec == 2 ? ", filtered" : "")).c_str());
+        std::printf("  %-17s %6u bytes%s\n",
+                    std::string(name_of_section(entry.kind)).c_str(),
+                    entry.raw_bytes,
+                    entry.codec == 0 ? ""
+                                     : (", zstd " + std::to_string(entry.stored_bytes) +
+                                        (entry.codec == 2 ? ", filtered" : ""))
+                                           .c_str());
     }
 }
 
@@ -30,12 +35,20 @@ void print_probes(const Sector& sector) {
             low[axis] = first ? p[axis] : std::min(low[axis], p[axis]);
             high[axis] = first ? p[axis] : std::max(high[axis], p[axis]);
         }
-        for (std::size_t b = 0; b < 3; ++b) visibility += decode_fixed(probe.sky_visibility[b], sky_visibility_scale);
+        for (std::size_t b = 0; b < 3; ++b)
+            visibility += decode_fixed(probe.sky_visibility[b], sky_visibility_scale);
     }
-    std::printf("probes          %zu (%zu ground, %zu vegetation, %zu manual)\n", sector.probes.size(), of_kind[0], of_kind[1], of_kind[2]);
-    if (sector.probes.empty()) return;
-    std::printf("heights         %.2f to %.2f m\n", static_cast<double>(low[2]), static_cast<double>(high[2]));
-    std::printf("sky visibility  %.3f on average\n", visibility / (3.0 * static_cast<double>(sector.probes.size())));
+    std::printf("probes          %zu (%zu ground, %zu vegetation, %zu manual)\n",
+                sector.probes.size(),
+                of_kind[0],
+                of_kind[1],
+                of_kind[2]);
+    if (sector.probes.empty())
+        return;
+    std::printf(
+        "heights         %.2f to %.2f m\n", static_cast<double>(low[2]), static_cast<double>(high[2]));
+    std::printf("sky visibility  %.3f on average\n",
+                visibility / (3.0 * static_cast<double>(sector.probes.size())));
 }
 
 // One line for each optional section that the file has.
@@ -44,7 +57,8 @@ void print_light(const Sector& sector) {
         float most = 0;
         for (const StaticIrradiance& probe : sector.static_irradiance) {
             const float scale = scale_of_exponent(probe.exponent);
-            for (const auto& channel : probe.codes) most = std::max(most, decode_fixed(*std::max_element(channel.begin(), channel.end()), scale));
+            for (const auto& channel : probe.codes)
+                most = std::max(most, decode_fixed(*std::max_element(channel.begin(), channel.end()), scale));
         }
         std::printf("static light    up to %g (E/pi)\n", static_cast<double>(most));
     }
@@ -52,17 +66,27 @@ void print_light(const Sector& sector) {
         const LocalTransfer& local = *sector.local_transfer;
         const auto is_own = [](const LocalSource& source) { return source.di == 0 && source.dj == 0; };
         const auto own = std::count_if(local.sources.begin(), local.sources.end(), is_own);
-        std::printf("local lights    %zu pairs of probe and source, %zu sources, of which %zu in neighbours\n", local.pairs.size(),
-                    local.sources.size(), local.sources.size() - static_cast<std::size_t>(own));
+        std::printf(
+            "local lights    %zu pairs of probe and source, %zu sources, of which %zu in neighbours\n",
+            local.pairs.size(),
+            local.sources.size(),
+            local.sources.size() - static_cast<std::size_t>(own));
     }
     if (!sector.interiors.empty()) {
         std::size_t triangles = 0;
-        for (const Interior& interior : sector.interiors) triangles += interior.triangles.size();
+        for (const Interior& interior : sector.interiors)
+            triangles += interior.triangles.size();
         std::printf("interiors       %zu with %zu triangles\n", sector.interiors.size(), triangles);
     }
     if (const auto& c = sector.convergence) {
-        std::printf("convergence     error %g asked, %g median, %g at 95 %%, %g at most; %u to %u paths a probe\n", static_cast<double>(c->error_asked),
-                    static_cast<double>(c->error_median), static_cast<double>(c->error_p95), static_cast<double>(c->error_max), c->paths_least, c->paths_most);
+        std::printf(
+            "convergence     error %g asked, %g median, %g at 95 %%, %g at most; %u to %u paths a probe\n",
+            static_cast<double>(c->error_asked),
+            static_cast<double>(c->error_median),
+            static_cast<double>(c->error_p95),
+            static_cast<double>(c->error_max),
+            c->paths_least,
+            c->paths_most);
     }
 }
 
@@ -70,7 +94,8 @@ void print_light(const Sector& sector) {
 
 int run_info(Arguments arguments) {
     const auto parsed = ParsedArguments::parse("info", arguments, {});
-    if (!parsed) return exit_usage;
+    if (!parsed)
+        return exit_usage;
     if (parsed->positional.size() != 1) {
         complain("info needs exactly one file");
         return exit_usage;
@@ -78,26 +103,45 @@ int run_info(Arguments arguments) {
     int exit_code = exit_valid;
     std::vector<std::uint8_t> bytes;
     const std::optional<Sector> loaded = load_sector(parsed->positional.front(), exit_code, &bytes);
-    if (!loaded) return exit_code;
+    if (!loaded)
+        return exit_code;
     const Sector& sector = *loaded;
     std::vector<SectionEntry> entries;
-    if (const ReadStatus status = read_section_table(bytes, entries); !status.ok()) return exit_invalid;
+    if (const ReadStatus status = read_section_table(bytes, entries); !status.ok())
+        return exit_invalid;
 
     const int x = sector.i * sector_size_m, y = sector.j * sector_size_m;
-    std::printf("sector          (%d, %d): x %d to %d m, y %d to %d m\n", sector.i, sector.j, x, x + sector_size_m, y, y + sector_size_m);
+    std::printf("sector          (%d, %d): x %d to %d m, y %d to %d m\n",
+                sector.i,
+                sector.j,
+                x,
+                x + sector_size_m,
+                y,
+                y + sector_size_m);
     std::printf("file            %zu bytes, format %s\n", bytes.size(), format_version(bytes).c_str());
     print_probes(sector);
     const BakeRecord& bake = sector.bake;
-    std::printf("settings        rays %u, bounces %u, reach %g m, min_distance %g m\n", bake.rays, bake.bounces,
-                static_cast<double>(bake.reach_m), static_cast<double>(bake.min_distance_m));
+    std::printf("settings        rays %u, bounces %u, reach %g m, min_distance %g m\n",
+                bake.rays,
+                bake.bounces,
+                static_cast<double>(bake.reach_m),
+                static_cast<double>(bake.min_distance_m));
     std::printf("settings key    ");
-    for (std::uint8_t byte : bake.settings_key) std::printf("%02x", byte);
+    for (std::uint8_t byte : bake.settings_key)
+        std::printf("%02x", byte);
     const Statistics& s = sector.statistics;
-    std::printf("\nplacement       %u candidates, %u moved out of solids, %u dropped in solids, %u removed by volumes, %u thinned\n",
-                s.candidates, s.moved_out, s.dropped_in_solid, s.removed_by_volume, s.thinned);
+    std::printf(
+        "\nplacement       %u candidates, %u moved out of solids, %u dropped in solids, %u removed by "
+        "volumes, %u thinned\n",
+        s.candidates,
+        s.moved_out,
+        s.dropped_in_solid,
+        s.removed_by_volume,
+        s.thinned);
     std::printf("spacing used    %g m\n", static_cast<double>(s.used_distance_m));
     std::printf("rays            %llu, of which %llu met the back of a one-sided surface\n",
-                static_cast<unsigned long long>(s.rays), static_cast<unsigned long long>(s.back_hits));
+                static_cast<unsigned long long>(s.rays),
+                static_cast<unsigned long long>(s.back_hits));
     print_light(sector);
     print_sections(entries);
     return exit_valid;

@@ -13,12 +13,16 @@ namespace {
 constexpr const char* head =
     "# Issues\n"
     "\n"
-    "All that `drtv validate` can find. This page is made by `drtv issues`; a test fails where it is stale. A code never changes its\n"
+    "All that `drtv validate` can find. This page is made by `drtv issues`; a test fails where it is stale. "
+    "A code never changes its\n"
     "meaning and is never used again. Rules stand in `SPEC.md`.\n"
     "\n"
-    "A file with an *error* is invalid: a daemon does not publish it, and `drtv validate` exits with 3. A *warning* is for a person, unless\n"
-    "`--warnings-as-errors` says otherwise. `--ignore CODE` leaves a code out. The groups `borders` and `set` are looked at with\n"
-    "`--neighbours` only. Offsets are bytes in the file; inside a compressed section, that section's first byte.\n";
+    "A file with an *error* is invalid: a daemon does not publish it, and `drtv validate` exits with 3. A "
+    "*warning* is for a person, unless\n"
+    "`--warnings-as-errors` says otherwise. `--ignore CODE` leaves a code out. The groups `borders` and "
+    "`set` are looked at with\n"
+    "`--neighbours` only. Offsets are bytes in the file; inside a compressed section, that section's first "
+    "byte.\n";
 
 struct GroupText {
     IssueGroup group;
@@ -36,7 +40,8 @@ constexpr std::array<GroupText, 6> groups = {{{IssueGroup::structure, "Structure
 
 int run_issues(Arguments arguments) {
     const auto parsed = ParsedArguments::parse("issues", arguments, {});
-    if (!parsed) return exit_usage;
+    if (!parsed)
+        return exit_usage;
     if (!parsed->positional.empty()) {
         complain("issues takes no arguments");
         return exit_usage;
@@ -45,11 +50,18 @@ int run_issues(Arguments arguments) {
     for (const auto& [group, title] : groups) {
         std::printf("\n## %s\n\n| code | severity | meaning |\n|------|----------|---------|\n", title);
         for (const Issue* issue : all_issues()) {
-            if (issue->group != group) continue;
-            std::printf("| `%s` | %s | %s |\n", std::string(issue->code).c_str(), issue->severity == Severity::error ? "error" : "warning", std::string(issue->meaning).c_str());
+            if (issue->group != group)
+                continue;
+            std::printf("| `%s` | %s | %s |\n",
+                        std::string(issue->code).c_str(),
+                        issue->severity == Severity::error ? "error" : "warning",
+                        std::string(issue->meaning).c_str());
         }
     }
-    std::fputs("\n## Retired\n\n| code | until | now |\n|------|-------|-----|\n| `STRUCTURE` | 0.1.0 | the codes of the group structure |\n", stdout);
+    std::fputs(
+        "\n## Retired\n\n| code | until | now |\n|------|-------|-----|\n| `STRUCTURE` | 0.1.0 | the codes "
+        "of the group structure |\n",
+        stdout);
     return exit_valid;
 }
 

@@ -15,7 +15,10 @@ namespace drtv::tool {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, DotQuantity>, 4> quantities = {
-    {{"relit", DotQuantity::relit}, {"sky", DotQuantity::sky}, {"errors", DotQuantity::errors}, {"back_hits", DotQuantity::back_hits}}};
+    {{"relit", DotQuantity::relit},
+     {"sky", DotQuantity::sky},
+     {"errors", DotQuantity::errors},
+     {"back_hits", DotQuantity::back_hits}}};
 
 struct PreviewArguments {
     std::string folder, out;
@@ -24,16 +27,21 @@ struct PreviewArguments {
 };
 
 std::optional<PreviewArguments> parse(Arguments arguments) {
-    const auto parsed = ParsedArguments::parse("preview", arguments, {{"--out", true}, {"--metres-per-pixel", true}, {"--quantity", true}});
-    if (!parsed) return std::nullopt;
+    const auto parsed = ParsedArguments::parse(
+        "preview", arguments, {{"--out", true}, {"--metres-per-pixel", true}, {"--quantity", true}});
+    if (!parsed)
+        return std::nullopt;
     PreviewArguments preview;
     const auto metres_per_pixel = parsed->positive("--metres-per-pixel", 1000, 0);
-    if (!metres_per_pixel) return std::nullopt;
+    if (!metres_per_pixel)
+        return std::nullopt;
     preview.metres_per_pixel = *metres_per_pixel;
     if (parsed->has("--quantity")) {
-        const auto* quantity = std::ranges::find(quantities, parsed->value("--quantity"), &std::pair<std::string_view, DotQuantity>::first);
+        const auto* quantity = std::ranges::find(
+            quantities, parsed->value("--quantity"), &std::pair<std::string_view, DotQuantity>::first);
         if (quantity == quantities.end()) {
-            complain("preview: --quantity takes relit, sky, errors or back_hits, not \"" + parsed->value("--quantity") + "\"");
+            complain("preview: --quantity takes relit, sky, errors or back_hits, not \"" +
+                     parsed->value("--quantity") + "\"");
             return std::nullopt;
         }
         preview.quantity = quantity->second;
@@ -55,23 +63,34 @@ std::optional<PreviewArguments> parse(Arguments arguments) {
 
 int run_preview(Arguments arguments) {
     const auto parsed = parse(arguments);
-    if (!parsed) return exit_usage;
+    if (!parsed)
+        return exit_usage;
     const auto files = sector_files(parsed->folder);
-    if (!files) return exit_unreadable;
+    if (!files)
+        return exit_unreadable;
     RegionPicture picture;
     for (const std::string& file : *files) {
         int exit_code = exit_valid;
         const std::optional<Sector> sector = load_sector(file, exit_code);
-        if (!sector) return exit_code;
-        picture.add(*sector, [&](std::size_t p, float sky_visibility) { return dot_colour(*sector, p, sky_visibility, parsed->quantity); });
+        if (!sector)
+            return exit_code;
+        picture.add(*sector, [&](std::size_t p, float sky_visibility) {
+            return dot_colour(*sector, p, sky_visibility, parsed->quantity);
+        });
     }
     const auto image = draw(picture, parsed->metres_per_pixel);
-    if (!image) return exit_usage;
+    if (!image)
+        return exit_usage;
     if (std::string error; !write_file(parsed->out, encode_png(*image), error)) {
         complain(error);
         return exit_unreadable;
     }
-    std::printf("%s: %zu x %zu pixels, %zu sectors, %zu probes\n", parsed->out.c_str(), image->width, image->height, files->size(), picture.dots.size());
+    std::printf("%s: %zu x %zu pixels, %zu sectors, %zu probes\n",
+                parsed->out.c_str(),
+                image->width,
+                image->height,
+                files->size(),
+                picture.dots.size());
     return exit_valid;
 }
 

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 4> optional_sections = {"static_irradiance", "local_transfer", "convergence", "interiors"};
+constexpr std::array<std::string_view, 4> optional_sections = {
+    "static_irradiance", "local_transfer", "convergence", "interiors"};
 
 struct Request {
     std::string in, out;
@@ -25,8 +26,10 @@ struct Request {
 };
 
 std::optional<Request> parse(Arguments arguments) {
-    const auto parsed = ParsedArguments::parse("strip", arguments, {{"--out", true}, {"--keep", true}, {"--codec", true}});
-    if (!parsed) return std::nullopt;
+    const auto parsed =
+        ParsedArguments::parse("strip", arguments, {{"--out", true}, {"--keep", true}, {"--codec", true}});
+    if (!parsed)
+        return std::nullopt;
     if (parsed->positional.size() != 1 || !parsed->has("--out")) {
         complain("usage is: drtv strip PATH --out PATH [--keep SECTION,...] [--codec raw|zstd]");
         return std::nullopt;
@@ -39,8 +42,11 @@ std::optional<Request> parse(Arguments arguments) {
         request.keep = split_list(keep);
     }
     for (const std::string& name : request.keep) {
-        if (std::ranges::find(optional_sections, name) != optional_sections.end()) continue;
-        complain("strip: \"" + name + "\" is no optional section: there are static_irradiance, local_transfer, convergence and interiors; all and none stand alone");
+        if (std::ranges::find(optional_sections, name) != optional_sections.end())
+            continue;
+        complain("strip: \"" + name +
+                 "\" is no optional section: there are static_irradiance, local_transfer, convergence and "
+                 "interiors; all and none stand alone");
         return std::nullopt;
     }
     const std::string codec = parsed->has("--codec") ? parsed->value("--codec") : "raw";
@@ -54,21 +60,29 @@ std::optional<Request> parse(Arguments arguments) {
 
 void strip(Sector& sector, const std::vector<std::string>& keep) {
     const auto keeps = [&](std::string_view name) { return std::ranges::find(keep, name) != keep.end(); };
-    if (!keeps("static_irradiance")) sector.static_irradiance.clear();
-    if (!keeps("local_transfer")) sector.local_transfer.reset();
-    if (!keeps("convergence")) sector.convergence.reset();
-    if (!keeps("interiors")) sector.interiors.clear();
+    if (!keeps("static_irradiance"))
+        sector.static_irradiance.clear();
+    if (!keeps("local_transfer"))
+        sector.local_transfer.reset();
+    if (!keeps("convergence"))
+        sector.convergence.reset();
+    if (!keeps("interiors"))
+        sector.interiors.clear();
 }
 
-// The folder's files keep their names below `out`; a single file becomes `out`, or lies in it where it is a folder or ends with a slash.
+// The folder's files keep their names below `out`; a single file becomes `out`, or lies in it where it is a
+// folder or ends with a slash.
 std::string target_of(const std::string& file, const Request& request) {
     std::error_code code;
-    if (fs::is_directory(request.in, code)) return (fs::path(request.out) / fs::path(file).lexically_relative(request.in)).string();
-    if (fs::is_directory(request.out, code) || request.out.ends_with('/')) return (fs::path(request.out) / fs::path(file).filename()).string();
+    if (fs::is_directory(request.in, code))
+        return (fs::path(request.out) / fs::path(file).lexically_relative(request.in)).string();
+    if (fs::is_directory(request.out, code) || request.out.ends_with('/'))
+        return (fs::path(request.out) / fs::path(file).filename()).string();
     return request.out;
 }
 
-// Whether `out` is `in` or lies below it: what is stripped away would be gone, or be found again by the next run.
+// Whether `out` is `in` or lies below it: what is stripped away would be gone, or be found again by the next
+// run.
 bool is_within(const std::string& in, const std::string& out) {
     std::error_code code;
     const fs::path inner = fs::weakly_canonical(out, code), outer = fs::weakly_canonical(in, code);
@@ -79,7 +93,8 @@ bool is_within(const std::string& in, const std::string& out) {
 std::size_t left_behind(const std::string& out, const std::set<fs::path>& written) {
     std::size_t others = 0;
     if (const auto files = sector_files(out)) {
-        for (const std::string& file : *files) others += written.contains(fs::path(file).lexically_normal()) ? 0u : 1u;
+        for (const std::string& file : *files)
+            others += written.contains(fs::path(file).lexically_normal()) ? 0u : 1u;
     }
     return others;
 }
@@ -88,16 +103,19 @@ std::size_t left_behind(const std::string& out, const std::set<fs::path>& writte
 
 int run_strip(Arguments arguments) {
     const auto request = parse(arguments);
-    if (!request) return exit_usage;
+    if (!request)
+        return exit_usage;
     const auto files = sector_files(request->in);
-    if (!files) return exit_unreadable;
+    if (!files)
+        return exit_unreadable;
     if (is_within(request->in, request->out)) {
         complain("strip: " + request->out + " is, or lies in, " + request->in + ": write to another place");
         return exit_usage;
     }
     std::set<fs::path> inputs;
     std::error_code code;
-    for (const std::string& file : *files) inputs.insert(fs::weakly_canonical(file, code));
+    for (const std::string& file : *files)
+        inputs.insert(fs::weakly_canonical(file, code));
     // All are read before the first is written, so that a broken one leaves no mixture.
     for (const std::string& file : *files) {
         const std::string target = target_of(file, *request);
@@ -106,7 +124,8 @@ int run_strip(Arguments arguments) {
             return exit_usage;
         }
         int exit_code = exit_valid;
-        if (!load_sector(file, exit_code)) return exit_code;
+        if (!load_sector(file, exit_code))
+            return exit_code;
     }
     std::size_t before = 0, after = 0;
     std::set<fs::path> written;
@@ -114,12 +133,14 @@ int run_strip(Arguments arguments) {
         std::vector<std::uint8_t> bytes;
         int exit_code = exit_valid;
         std::optional<Sector> sector = load_sector(file, exit_code, &bytes);
-        if (!sector) return exit_code;
+        if (!sector)
+            return exit_code;
         strip(*sector, request->keep);
         const std::vector<std::uint8_t> stripped = write_sector(*sector, request->write);
         const std::string target = target_of(file, *request);
         std::error_code ignored;
-        if (const fs::path folder = fs::path(target).parent_path(); !folder.empty()) fs::create_directories(folder, ignored);
+        if (const fs::path folder = fs::path(target).parent_path(); !folder.empty())
+            fs::create_directories(folder, ignored);
         if (std::string error; !write_file(target, stripped, error)) {
             complain(error);
             return exit_unreadable;
@@ -128,11 +149,19 @@ int run_strip(Arguments arguments) {
         before += bytes.size();
         after += stripped.size();
     }
-    std::printf("%zu sector file%s, %zu bytes before, %zu after\n", files->size(), files->size() == 1 ? "" : "s", before, after);
+    std::printf("%zu sector file%s, %zu bytes before, %zu after\n",
+                files->size(),
+                files->size() == 1 ? "" : "s",
+                before,
+                after);
     std::error_code ignored;
     if (fs::is_directory(request->in, ignored)) {
         if (const std::size_t others = left_behind(request->out, written); others > 0) {
-            std::printf("%s holds %zu other sector file%s, left as %s\n", request->out.c_str(), others, others == 1 ? "" : "s", others == 1 ? "it was" : "they were");
+            std::printf("%s holds %zu other sector file%s, left as %s\n",
+                        request->out.c_str(),
+                        others,
+                        others == 1 ? "" : "s",
+                        others == 1 ? "it was" : "they were");
         }
     }
     return exit_valid;

@@ -22,7 +22,7 @@ namespace {
 struct CheckedFile {
     std::string path;
     std::optional<std::array<std::int32_t, 2>> named;  // the sector that its name tells
-    std::string unreadable;  // a sentence; else the rest holds
+    std::string unreadable;                            // a sentence; else the rest holds
     Report report;
     std::optional<RegionSector> region;  // with --neighbours, where the file can be read
 };
@@ -35,9 +35,17 @@ struct Request {
 };
 
 std::optional<Request> parse(Arguments arguments) {
-    const auto parsed = ParsedArguments::parse("validate", arguments,
-                                               {{"--json"}, {"--quick"}, {"--full"}, {"--neighbours"}, {"--warnings-as-errors"}, {"--ignore", true}, {"--max-findings", true}});
-    if (!parsed) return std::nullopt;
+    const auto parsed = ParsedArguments::parse("validate",
+                                               arguments,
+                                               {{"--json"},
+                                                {"--quick"},
+                                                {"--full"},
+                                                {"--neighbours"},
+                                                {"--warnings-as-errors"},
+                                                {"--ignore", true},
+                                                {"--max-findings", true}});
+    if (!parsed)
+        return std::nullopt;
     Request request;
     request.paths = parsed->positional;
     request.json = parsed->has("--json");
@@ -45,11 +53,14 @@ std::optional<Request> parse(Arguments arguments) {
     request.warnings_as_errors = parsed->has("--warnings-as-errors");
     request.options.quick = parsed->has("--quick");
     if (request.options.quick && (parsed->has("--full") || request.neighbours)) {
-        complain(std::string("validate: --quick looks at structure and checksums only, it does not go with ") + (request.neighbours ? "--neighbours" : "--full"));
+        complain(
+            std::string("validate: --quick looks at structure and checksums only, it does not go with ") +
+            (request.neighbours ? "--neighbours" : "--full"));
         return std::nullopt;
     }
     const auto most = parsed->count("--max-findings", 1, 1'000'000, request.options.max_findings);
-    if (!most) return std::nullopt;
+    if (!most)
+        return std::nullopt;
     request.options.max_findings = *most;
     for (const std::string& list : parsed->all("--ignore")) {
         for (const std::string& code : split_list(list)) {
@@ -76,26 +87,32 @@ std::optional<Request> parse(Arguments arguments) {
 std::optional<std::array<std::int32_t, 2>> sector_in_name(const std::string& path) {
     const std::string name = std::filesystem::path(path).stem().string();
     constexpr std::string_view prefix = "sector_";
-    if (!name.starts_with(prefix)) return std::nullopt;
+    if (!name.starts_with(prefix))
+        return std::nullopt;
     std::array<std::int32_t, 2> sector{};
     const char *at = name.data() + prefix.size(), *end = name.data() + name.size();
     for (std::size_t k = 0; k < 2; ++k) {
         const auto result = std::from_chars(at, end, sector[k]);
-        if (result.ec != std::errc()) return std::nullopt;
+        if (result.ec != std::errc())
+            return std::nullopt;
         at = result.ptr;
-        if (k == 0 && (at == end || *at++ != '_')) return std::nullopt;
+        if (k == 0 && (at == end || *at++ != '_'))
+            return std::nullopt;
     }
     return at == end ? std::optional(sector) : std::nullopt;
 }
 
 void check_file(const Request& request, CheckedFile& file) {
     const auto bytes = read_file(file.path, file.unreadable);
-    if (!bytes) return;
+    if (!bytes)
+        return;
     file.report = validate_sector(*bytes, request.options);
-    if (!request.neighbours) return;
+    if (!request.neighbours)
+        return;
     RegionSector region;
     region.named = file.named;
-    if (read_region_sector(*bytes, region).ok()) file.region = std::move(region);
+    if (read_region_sector(*bytes, region).ok())
+        file.region = std::move(region);
 }
 
 // Each file by itself, on all cores.
@@ -109,13 +126,15 @@ void check_files(const Request& request, std::vector<CheckedFile>& files) {
         }
     };
     std::vector<std::jthread> helpers;
-    const std::size_t threads = std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), files.size());
-    for (std::size_t n = 1; n < threads; ++n) helpers.emplace_back(work);
+    const std::size_t threads =
+        std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), files.size());
+    for (std::size_t n = 1; n < threads; ++n)
+        helpers.emplace_back(work);
     work();
 }
 
-// The files of one folder against each other. What cannot be read is told as such, and counts as there by its name. REQUIRES: all were
-// checked.
+// The files of one folder against each other. What cannot be read is told as such, and counts as there by its
+// name. REQUIRES: all were checked.
 void check_region(const Request& request, std::span<CheckedFile* const> files) {
     std::vector<RegionSector> sectors;
     std::vector<CheckedFile*> file_of;
@@ -130,7 +149,8 @@ void check_region(const Request& request, std::span<CheckedFile* const> files) {
     }
     for (RegionFinding& found : validate_region(sectors, unreadable)) {
         Report& report = file_of[found.sector]->report;
-        if (admit(report, *found.finding.issue, request.options)) report.findings.push_back(std::move(found.finding));
+        if (admit(report, *found.finding.issue, request.options))
+            report.findings.push_back(std::move(found.finding));
     }
 }
 
@@ -141,32 +161,60 @@ std::size_t check_regions(const Request& request, std::vector<CheckedFile>& file
         std::error_code code;
         by_folder[std::filesystem::weakly_canonical(file.path, code).parent_path()].push_back(&file);
     }
-    for (const auto& [folder, its_files] : by_folder) check_region(request, its_files);
+    for (const auto& [folder, its_files] : by_folder)
+        check_region(request, its_files);
     return by_folder.size();
 }
 
-const char* name_of(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
+const char* name_of(Severity severity) {
+    return severity == Severity::error ? "error" : "warning";
+}
 
 void print_findings(const CheckedFile& file) {
     for (const Finding& finding : file.report.findings) {
-        std::printf("%s: %s %s at byte %llu", file.path.c_str(), name_of(finding.issue->severity), std::string(finding.issue->code).c_str(), static_cast<unsigned long long>(finding.offset));
-        if (!finding.path.empty()) std::printf(", %s", finding.path.c_str());
+        std::printf("%s: %s %s at byte %llu",
+                    file.path.c_str(),
+                    name_of(finding.issue->severity),
+                    std::string(finding.issue->code).c_str(),
+                    static_cast<unsigned long long>(finding.offset));
+        if (!finding.path.empty())
+            std::printf(", %s", finding.path.c_str());
         std::printf(": %s\n", finding.message.c_str());
     }
-    if (file.report.truncated) std::printf("%s: %zu findings, the first %zu are shown\n", file.path.c_str(), file.report.errors + file.report.warnings, file.report.findings.size());
+    if (file.report.truncated)
+        std::printf("%s: %zu findings, the first %zu are shown\n",
+                    file.path.c_str(),
+                    file.report.errors + file.report.warnings,
+                    file.report.findings.size());
 }
 
 void append_file(JsonWriter& json, const CheckedFile& file, bool valid) {
     const Report& report = file.report;
     json.begin_object().key("file").value(file.path).key("valid").value(valid);
-    json.key("errors").value(std::uint64_t{report.errors}).key("warnings").value(std::uint64_t{report.warnings}).key("truncated").value(report.truncated);
+    json.key("errors")
+        .value(std::uint64_t{report.errors})
+        .key("warnings")
+        .value(std::uint64_t{report.warnings})
+        .key("truncated")
+        .value(report.truncated);
     json.key("findings").begin_array();
     for (const Finding& finding : report.findings) {
-        json.begin_object().key("code").value(finding.issue->code).key("severity").value(name_of(finding.issue->severity));
-        json.key("group").value(name_of(finding.issue->group)).key("offset").value(finding.offset).key("path").value(finding.path);
+        json.begin_object()
+            .key("code")
+            .value(finding.issue->code)
+            .key("severity")
+            .value(name_of(finding.issue->severity));
+        json.key("group")
+            .value(name_of(finding.issue->group))
+            .key("offset")
+            .value(finding.offset)
+            .key("path")
+            .value(finding.path);
         json.key("value");
-        if (finding.value) json.value(*finding.value);
-        else json.null();
+        if (finding.value)
+            json.value(*finding.value);
+        else
+            json.null();
         json.key("message").value(finding.message).end_object();
     }
     json.end_array().end_object();
@@ -176,7 +224,8 @@ void append_file(JsonWriter& json, const CheckedFile& file, bool valid) {
 
 int run_validate(Arguments arguments) {
     std::optional<Request> request = parse(arguments);
-    if (!request) return exit_usage;
+    if (!request)
+        return exit_usage;
     request->options.ignored = request->ignored;
 
     int exit_code = exit_valid;
@@ -186,7 +235,8 @@ int run_validate(Arguments arguments) {
         if (const auto found = sector_files(path)) {
             for (const std::string& file : *found) {
                 std::error_code code;
-                if (!known.insert(std::filesystem::weakly_canonical(file, code)).second) continue;  // named twice
+                if (!known.insert(std::filesystem::weakly_canonical(file, code)).second)
+                    continue;  // named twice
                 files.push_back({file, sector_in_name(file), {}, {}, {}});
             }
         } else {
@@ -209,14 +259,34 @@ int run_validate(Arguments arguments) {
         ++checked;
         invalid += valid ? 0 : 1;
         warnings += file.report.warnings;
-        if (!valid) exit_code = exit_invalid;
-        if (request->json) append_file(json, file, valid);
-        else print_findings(file);
+        if (!valid)
+            exit_code = exit_invalid;
+        if (request->json)
+            append_file(json, file, valid);
+        else
+            print_findings(file);
     }
-    json.end_array().key("checked").value(std::uint64_t{checked}).key("invalid").value(std::uint64_t{invalid}).key("warnings").value(std::uint64_t{warnings}).end_object();
-    if (request->json) std::puts(json.text().c_str());
-    else std::printf("%zu sector file%s checked, %zu invalid%s\n", checked, checked == 1 ? "" : "s", invalid, warnings == 0 ? "" : (", " + std::to_string(warnings) + (warnings == 1 ? " warning" : " warnings")).c_str());
-    if (!request->json && folders > 1) std::printf("%zu folders, the borders of each by itself\n", folders);
+    json.end_array()
+        .key("checked")
+        .value(std::uint64_t{checked})
+        .key("invalid")
+        .value(std::uint64_t{invalid})
+        .key("warnings")
+        .value(std::uint64_t{warnings})
+        .end_object();
+    if (request->json)
+        std::puts(json.text().c_str());
+    else
+        std::printf(
+            "%zu sector file%s checked, %zu invalid%s\n",
+            checked,
+            checked == 1 ? "" : "s",
+            invalid,
+            warnings == 0
+                ? ""
+                : (", " + std::to_string(warnings) + (warnings == 1 ? " warning" : " warnings")).c_str());
+    if (!request->json && folders > 1)
+        std::printf("%zu folders, the borders of each by itself\n", folders);
     return exit_code;
 }
 

@@ -6,7 +6,13 @@
 
 namespace drtv::tool {
 
-enum ExitCode : int { exit_valid = 0, exit_usage = 1, exit_unreadable = 2, exit_invalid = 3, exit_different = 4 };
+enum ExitCode : int {
+    exit_valid = 0,
+    exit_usage = 1,
+    exit_unreadable = 2,
+    exit_invalid = 3,
+    exit_different = 4
+};
 
 using Arguments = std::span<const std::string>;
 

@@ -14,7 +14,9 @@ constexpr float red_back_hits = 0.05f;
 constexpr Float3 unknown_colour = {0.2f, 0.2f, 0.2f};
 
 // Clear sky at noon and a high sun, in units in which the sky's radiance is about one third.
-DistantLight noon_sky() { return constant_sky({0.24f, 0.32f, 0.46f}); }
+DistantLight noon_sky() {
+    return constant_sky({0.24f, 0.32f, 0.46f});
+}
 DistantLight noon_sun() {
     constexpr Float3 to_sun = {0.40f, -0.30f, 0.866f};
     return directional_sun({3.6f, 3.4f, 3.0f}, to_sun);
@@ -24,40 +26,53 @@ DistantLight noon_sun() {
 Float3 ambient_of(const Probe& probe, const StaticIrradiance* static_light) {
     static const DistantLight sky = noon_sky(), sun = noon_sun();
     BasisColours colours = relight(probe, sky, sun);
-    if (static_light != nullptr) add_static_irradiance(colours, *static_light);
+    if (static_light != nullptr)
+        add_static_irradiance(colours, *static_light);
     Float3 sum{};
-    constexpr std::array<Float3, 6> normals = {{{0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, -1}}};
+    constexpr std::array<Float3, 6> normals = {
+        {{0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, -1}}};
     for (const Float3& normal : normals) {
         const Float3 ambient = shade_ambient(colours, normal);
-        for (std::size_t c = 0; c < 3; ++c) sum[c] += ambient[c] / static_cast<float>(normals.size());
+        for (std::size_t c = 0; c < 3; ++c)
+            sum[c] += ambient[c] / static_cast<float>(normals.size());
     }
     return sum;
 }
 
 // Green at 0, yellow half way, red from 1 on.
-Float3 traffic_light(float share) { return {std::clamp(2 * share, 0.0f, 1.0f), std::clamp(2 - 2 * share, 0.0f, 1.0f), 0}; }
+Float3 traffic_light(float share) {
+    return {std::clamp(2 * share, 0.0f, 1.0f), std::clamp(2 - 2 * share, 0.0f, 1.0f), 0};
+}
 
 Float3 error_colour(const Sector& sector) {
-    if (!sector.convergence) return unknown_colour;
+    if (!sector.convergence)
+        return unknown_colour;
     return traffic_light(sector.convergence->error_p95 / red_error);
 }
 
 Float3 back_hit_colour(const Sector& sector) {
     const double rays = std::max(1.0, static_cast<double>(sector.statistics.rays));
-    return traffic_light(static_cast<float>(static_cast<double>(sector.statistics.back_hits) / rays) / red_back_hits);
+    return traffic_light(static_cast<float>(static_cast<double>(sector.statistics.back_hits) / rays) /
+                         red_back_hits);
 }
 
 }  // namespace
 
 Float3 dot_colour(const Sector& sector, std::size_t p, float sky_visibility, DotQuantity quantity) {
     switch (quantity) {
-        case DotQuantity::relit: break;
-        case DotQuantity::sky: return {sky_visibility, sky_visibility, sky_visibility};
-        case DotQuantity::errors: return error_colour(sector);
-        case DotQuantity::back_hits: return back_hit_colour(sector);
+        case DotQuantity::relit:
+            break;
+        case DotQuantity::sky:
+            return {sky_visibility, sky_visibility, sky_visibility};
+        case DotQuantity::errors:
+            return error_colour(sector);
+        case DotQuantity::back_hits:
+            return back_hit_colour(sector);
     }
-    Float3 colour = ambient_of(sector.probes[p], sector.static_irradiance.empty() ? nullptr : &sector.static_irradiance[p]);
-    for (float& channel : colour) channel *= exposure;
+    Float3 colour = ambient_of(sector.probes[p],
+                               sector.static_irradiance.empty() ? nullptr : &sector.static_irradiance[p]);
+    for (float& channel : colour)
+        channel *= exposure;
     return colour;
 }
 

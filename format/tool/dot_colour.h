@@ -7,12 +7,15 @@
 
 namespace drtv::tool {
 
-// What colours the probes. The last two colour all probes of a sector alike, from green to red: the 95th percentile of
-// its errors (grey where the file has none), and the share of its rays that met the back of a one-sided surface, which
-// tells holes in a map and walls that face the wrong way.
+// What colours the probes. The last two colour all probes of a sector alike, from green to red: the 95th
+// percentile of its errors (grey where the file has none), and the share of its rays that met the back of a
+// one-sided surface, which tells holes in a map and walls that face the wrong way.
 enum class DotQuantity { relit, sky, errors, back_hits };
 
 // Linear. `sky_visibility`: the average of the three upward directions. REQUIRES: p < sector.probes.size().
-[[nodiscard]] Float3 dot_colour(const Sector& sector, std::size_t p, float sky_visibility, DotQuantity quantity);
+[[nodiscard]] Float3 dot_colour(const Sector& sector,
+                                std::size_t p,
+                                float sky_visibility,
+                                DotQuantity quantity);
 
 }  // namespace drtv::tool

@@ -1,5 +1,6 @@
 // A small JSON writer: appends to a string, keeps track of commas. Floats print with the shortest text that
-// reads back to the same float; text that is not UTF-8 (a file's name may be anything) has U+FFFD for each wrong byte.
+// reads back to the same float; text that is not UTF-8 (a file's name may be anything) has U+FFFD for each
+// wrong byte.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,8 @@ class JsonWriter {
     template <class Range>
     JsonWriter& array(const Range& range) {
         begin_array();
-        for (const auto& element : range) value(element);
+        for (const auto& element : range)
+            value(element);
         return end_array();
     }
 

@@ -7,7 +7,9 @@
 
 namespace drtv::tool {
 
-void complain(const std::string& sentence) { std::fprintf(stderr, "drtv: %s\n", sentence.c_str()); }
+void complain(const std::string& sentence) {
+    std::fprintf(stderr, "drtv: %s\n", sentence.c_str());
+}
 
 namespace {
 
@@ -45,13 +47,20 @@ int run(const std::vector<std::string>& arguments) {
         std::fputs(usage, stdout);
         return exit_valid;
     }
-    if (command == "validate") return run_validate(rest);
-    if (command == "info") return run_info(rest);
-    if (command == "dump") return run_dump(rest);
-    if (command == "preview") return run_preview(rest);
-    if (command == "strip") return run_strip(rest);
-    if (command == "diff") return run_diff(rest);
-    if (command == "issues") return run_issues(rest);
+    if (command == "validate")
+        return run_validate(rest);
+    if (command == "info")
+        return run_info(rest);
+    if (command == "dump")
+        return run_dump(rest);
+    if (command == "preview")
+        return run_preview(rest);
+    if (command == "strip")
+        return run_strip(rest);
+    if (command == "diff")
+        return run_diff(rest);
+    if (command == "issues")
+        return run_issues(rest);
     if (command == "--help" || command == "-h" || command == "help") {
         std::fputs(usage, stdout);
         return exit_valid;
@@ -70,7 +79,8 @@ int run(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
     const int exit_code = drtv::tool::run(std::vector<std::string>(argv + 1, argv + argc));
     // A full disk behind a redirected stdout must not look like success.
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
+        return exit_code;
     drtv::tool::complain("cannot write to standard output");
     return drtv::tool::exit_unreadable;
 }

@@ -15,15 +15,18 @@ class BitWriter {
 
     void put(std::uint32_t bits, unsigned count) {  // least significant bit first
         held_ |= std::uint64_t{bits} << held_count_;
-        for (held_count_ += count; held_count_ >= 8; held_count_ -= 8, held_ >>= 8) out_.push_back(static_cast<std::uint8_t>(held_));
+        for (held_count_ += count; held_count_ >= 8; held_count_ -= 8, held_ >>= 8)
+            out_.push_back(static_cast<std::uint8_t>(held_));
     }
     void put_code(std::uint32_t code, unsigned count) {  // Huffman codes go most significant bit first
         std::uint32_t reversed = 0;
-        for (unsigned k = 0; k < count; ++k) reversed |= ((code >> k) & 1u) << (count - 1 - k);
+        for (unsigned k = 0; k < count; ++k)
+            reversed |= ((code >> k) & 1u) << (count - 1 - k);
         put(reversed, count);
     }
     void flush() {
-        if (held_count_ > 0) out_.push_back(static_cast<std::uint8_t>(held_));
+        if (held_count_ > 0)
+            out_.push_back(static_cast<std::uint8_t>(held_));
         held_count_ = 0;
     }
 
@@ -35,17 +38,24 @@ class BitWriter {
 
 // RFC 1951, 3.2.6.
 void put_literal_or_length_code(BitWriter& bits, unsigned symbol) {
-    if (symbol < 144) bits.put_code(0x30 + symbol, 8);
-    else if (symbol < 256) bits.put_code(0x190 + symbol - 144, 9);
-    else if (symbol < 280) bits.put_code(symbol - 256, 7);
-    else bits.put_code(0xC0 + symbol - 280, 8);
+    if (symbol < 144)
+        bits.put_code(0x30 + symbol, 8);
+    else if (symbol < 256)
+        bits.put_code(0x190 + symbol - 144, 9);
+    else if (symbol < 280)
+        bits.put_code(symbol - 256, 7);
+    else
+        bits.put_code(0xC0 + symbol - 280, 8);
 }
 
-constexpr std::array<std::uint16_t, 29> length_base = {3,  4,  5,  6,  7,  8,  9,  10, 11,  13,  15,  17,  19,  23, 27,
-                                                       31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163, 195, 227, 258};
-constexpr std::array<std::uint8_t, 29> length_extra = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 0};
-constexpr std::array<std::uint16_t, 30> distance_base = {1,   2,   3,   4,   5,   7,    9,    13,   17,   25,   33,   49,   65,    97,    129,
-                                                         193, 257, 385, 513, 769, 1025, 1537, 2049, 3073, 4097, 6145, 8193, 12289, 16385, 24577};
+constexpr std::array<std::uint16_t, 29> length_base = {3,  4,  5,  6,   7,   8,   9,   10,  11, 13,
+                                                       15, 17, 19, 23,  27,  31,  35,  43,  51, 59,
+                                                       67, 83, 99, 115, 131, 163, 195, 227, 258};
+constexpr std::array<std::uint8_t, 29> length_extra = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2,
+                                                       2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 0};
+constexpr std::array<std::uint16_t, 30> distance_base = {
+    1,   2,   3,   4,   5,   7,    9,    13,   17,   25,   33,   49,   65,    97,    129,
+    193, 257, 385, 513, 769, 1025, 1537, 2049, 3073, 4097, 6145, 8193, 12289, 16385, 24577};
 
 template <std::size_t N>
 unsigned last_not_above(const std::array<std::uint16_t, N>& base, std::size_t value) {
@@ -71,12 +81,14 @@ Bytes deflate_fixed(const Bytes& data) {
     for (std::size_t at = 0; at < data.size();) {
         std::size_t length = 0, distance = 0;
         if (at + 4 <= data.size()) {
-            const std::uint32_t word = data[at] | std::uint32_t{data[at + 1]} << 8 | std::uint32_t{data[at + 2]} << 16 | std::uint32_t{data[at + 3]} << 24;
+            const std::uint32_t word = data[at] | std::uint32_t{data[at + 1]} << 8 |
+                                       std::uint32_t{data[at + 2]} << 16 | std::uint32_t{data[at + 3]} << 24;
             std::size_t& entry = last_at[(word * 2654435761u) >> 17];
             if (entry != SIZE_MAX && at - entry <= window) {
                 distance = at - entry;
                 const std::size_t limit = std::min(max_length, data.size() - at);
-                while (length < limit && data[entry + length] == data[at + length]) ++length;
+                while (length < limit && data[entry + length] == data[at + length])
+                    ++length;
             }
             entry = at;
         }
@@ -94,7 +106,8 @@ Bytes deflate_fixed(const Bytes& data) {
         a = (a + byte) % 65521;
         b = (b + a) % 65521;
     }
-    for (unsigned shift : {24u, 16u, 8u, 0u}) out.push_back(static_cast<std::uint8_t>((b << 16 | a) >> shift));
+    for (unsigned shift : {24u, 16u, 8u, 0u})
+        out.push_back(static_cast<std::uint8_t>((b << 16 | a) >> shift));
     return out;
 }
 
@@ -102,13 +115,15 @@ std::uint32_t crc32(const std::uint8_t* data, std::size_t size) {
     std::uint32_t crc = 0xFFFFFFFFu;
     for (std::size_t n = 0; n < size; ++n) {
         crc ^= data[n];
-        for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ (0xEDB88320u & (0u - (crc & 1u)));
+        for (int k = 0; k < 8; ++k)
+            crc = (crc >> 1) ^ (0xEDB88320u & (0u - (crc & 1u)));
     }
     return ~crc;
 }
 
 void append_be32(Bytes& out, std::uint32_t value) {
-    for (unsigned shift : {24u, 16u, 8u, 0u}) out.push_back(static_cast<std::uint8_t>(value >> shift));
+    for (unsigned shift : {24u, 16u, 8u, 0u})
+        out.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
 void append_chunk(Bytes& out, std::string_view type, const Bytes& content) {
@@ -140,7 +155,8 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
     Bytes header;
     append_be32(header, static_cast<std::uint32_t>(image.width));
     append_be32(header, static_cast<std::uint32_t>(image.height));
-    for (int byte : {8, 2, 0, 0, 0}) header.push_back(static_cast<std::uint8_t>(byte));
+    for (int byte : {8, 2, 0, 0, 0})
+        header.push_back(static_cast<std::uint8_t>(byte));
     append_chunk(out, "IHDR", header);
     append_chunk(out, "IDAT", deflate_fixed(filter_rows(image)));
     append_chunk(out, "IEND", {});

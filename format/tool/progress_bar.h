@@ -22,7 +22,7 @@ class ProgressBar {
     const std::string verb_;
     const std::size_t total_;
     const bool on_terminal_;
-    std::mutex mutex_;         // guards the rest
+    std::mutex mutex_;  // guards the rest
     Clock::time_point next_;
     bool drawn_ = false;
 };

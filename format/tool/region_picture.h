@@ -27,8 +27,8 @@ struct RegionPicture {
     void add(const Sector& sector, const std::function<Float3(std::size_t, float)>& colour);
 };
 
-// At 0 metres a pixel the longer side has about 1,600 pixels. Nothing, and a complaint, where the sectors lie too far apart for one
-// picture. REQUIRES: at least one sector.
+// At 0 metres a pixel the longer side has about 1,600 pixels. Nothing, and a complaint, where the sectors lie
+// too far apart for one picture. REQUIRES: at least one sector.
 [[nodiscard]] std::optional<Image> draw(const RegionPicture& picture, double metres_per_pixel);
 
 }  // namespace drtv::tool

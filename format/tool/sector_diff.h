@@ -23,19 +23,30 @@ struct Change {
     [[nodiscard]] double rms() const;
 };
 
-enum Quantity : std::size_t { transfer, sky_visibility, static_irradiance, local_transfer, relit, quantity_count };
-inline constexpr std::array<std::string_view, quantity_count> quantity_names = {"transfer", "sky_visibility", "static_irradiance", "local_transfer", "relit"};
+enum Quantity : std::size_t {
+    transfer,
+    sky_visibility,
+    static_irradiance,
+    local_transfer,
+    relit,
+    quantity_count
+};
+inline constexpr std::array<std::string_view, quantity_count> quantity_names = {
+    "transfer", "sky_visibility", "static_irradiance", "local_transfer", "relit"};
 
 inline constexpr std::size_t no_match = SIZE_MAX;
 
 struct SectorDiff {
-    std::vector<std::size_t> match;        // for each probe of the second sector, the first's at the same place, or no_match
-    std::vector<double> relit;             // for each probe of the second sector, its largest relit change; 0 where it has no match
-    std::vector<std::size_t> removed;      // probes of the first sector that have no match
-    std::size_t added = 0, changed = 0;    // probes: without a match; with other numbers than their match
-    std::size_t cells = 0;                 // of the grid, that name another probe
+    std::vector<std::size_t>
+        match;  // for each probe of the second sector, the first's at the same place, or no_match
+    std::vector<double>
+        relit;  // for each probe of the second sector, its largest relit change; 0 where it has no match
+    std::vector<std::size_t> removed;    // probes of the first sector that have no match
+    std::size_t added = 0, changed = 0;  // probes: without a match; with other numbers than their match
+    std::size_t cells = 0;               // of the grid, that name another probe
     bool settings = false, statistics = false, convergence = false, interiors = false, grid_place = false;
-    std::size_t pairs_added = 0, pairs_removed = 0;  // of local transfer; those of added and removed probes too
+    std::size_t pairs_added = 0,
+                pairs_removed = 0;  // of local transfer; those of added and removed probes too
     std::array<Change, quantity_count> changes;
 
     [[nodiscard]] bool equal() const;

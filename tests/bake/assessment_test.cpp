@@ -1,4 +1,5 @@
-// What an assessment promises, against bakes of both maps: a hit has the same bytes, a near hit lies within its bound.
+// What an assessment promises, against bakes of both maps: a hit has the same bytes, a near hit lies within
+// its bound.
 #include "bakerd/bake/assessment.h"
 
 #include "bakerd/bake/sector_bake.h"
@@ -29,9 +30,13 @@ struct Yard {
     explicit Yard(unsigned seed, bool lit) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> place(-60, 124);
-        for (int n = 0; n < 14; ++n) things.push_back({"block_" + std::to_string(n), "", 1, {place(random), -1, -place(random)}});
-        for (int n = 0; n < 40; ++n) things.push_back({"tree_" + std::to_string(n), "vegetation", 2, {place(random), 0, -place(random)}});
-        if (lit) lamps = {{10, 3, -10}, {50, 2.5, -90}};
+        for (int n = 0; n < 14; ++n)
+            things.push_back({"block_" + std::to_string(n), "", 1, {place(random), -1, -place(random)}});
+        for (int n = 0; n < 40; ++n)
+            things.push_back(
+                {"tree_" + std::to_string(n), "vegetation", 2, {place(random), 0, -place(random)}});
+        if (lit)
+            lamps = {{10, 3, -10}, {50, 2.5, -90}};
         probes = {{30, 2, -30}};
     }
 
@@ -39,12 +44,23 @@ struct Yard {
         GltfBuilder b;
         std::vector<int> materials;
         // Leaves let light through: paths step over surfaces.
-        for (const glm::vec4& colour : colours) materials.push_back(b.add_material({.colour = colour, .double_sided = materials.size() == 2}));
-        const std::vector<int> meshes = {b.add_mesh(ground(130), materials[0]), b.add_mesh(box({-2, 0, -2}, {2, 5, 2}), materials[1]), b.add_mesh(box({-crown_m, 1, -crown_m}, {crown_m, 5, crown_m}), materials[2])};
+        for (const glm::vec4& colour : colours)
+            materials.push_back(b.add_material({.colour = colour, .double_sided = materials.size() == 2}));
+        const std::vector<int> meshes = {
+            b.add_mesh(ground(130), materials[0]), b.add_mesh(box({-2, 0, -2}, {2, 5, 2}), materials[1]),
+            b.add_mesh(box({-crown_m, 1, -crown_m}, {crown_m, 5, crown_m}), materials[2])};
         b.add_node({.mesh = meshes[0], .name = "ground"});
-        for (const Thing& thing : things) b.add_node({.mesh = meshes[static_cast<std::size_t>(thing.mesh)], .translation = thing.at, .name = thing.name, .role = thing.role});
-        for (const glm::dvec3& lamp : lamps) b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", lamp_candela}}), .translation = lamp, .name = "lamp"});
-        for (const glm::dvec3& probe : probes) b.add_node({.translation = probe, .name = "probe", .role = "probe"});
+        for (const Thing& thing : things)
+            b.add_node({.mesh = meshes[static_cast<std::size_t>(thing.mesh)],
+                        .translation = thing.at,
+                        .name = thing.name,
+                        .role = thing.role});
+        for (const glm::dvec3& lamp : lamps)
+            b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", lamp_candela}}),
+                        .translation = lamp,
+                        .name = "lamp"});
+        for (const glm::dvec3& probe : probes)
+            b.add_node({.translation = probe, .name = "probe", .role = "probe"});
         return b;
     }
 };
@@ -62,14 +78,23 @@ bake::Settings settings_of_yard(std::uint32_t rays, bool local, std::uint32_t bo
 // The largest difference of a coefficient of one probe, as a share of its range.
 float error_of_probe(const Sector& a, const Sector& b, std::size_t p) {
     float worst = 0;
-    const auto differ = [&](float x, float y, float range) { worst = std::max(worst, std::abs(x - y) / range); };
+    const auto differ = [&](float x, float y, float range) {
+        worst = std::max(worst, std::abs(x - y) / range);
+    };
     const auto irradiance = [p](const Sector& sector, std::size_t c, std::size_t k) {
-        return sector.static_irradiance.empty() ? 0.0f : decode_fixed(sector.static_irradiance[p].codes[c][k], scale_of_exponent(sector.static_irradiance[p].exponent));
+        return sector.static_irradiance.empty()
+                   ? 0.0f
+                   : decode_fixed(sector.static_irradiance[p].codes[c][k],
+                                  scale_of_exponent(sector.static_irradiance[p].exponent));
     };
     for (std::size_t k = 0; k < basis_count; ++k) {
-        differ(decode_fixed(a.probes[p].sky_visibility[k], sky_visibility_scale), decode_fixed(b.probes[p].sky_visibility[k], sky_visibility_scale), 1);
+        differ(decode_fixed(a.probes[p].sky_visibility[k], sky_visibility_scale),
+               decode_fixed(b.probes[p].sky_visibility[k], sky_visibility_scale), 1);
         for (std::size_t c = 0; c < channel_count; ++c) {
-            for (std::size_t i = 0; i < sh_count; ++i) differ(decode_fixed(a.probes[p].transfer[c][k][i], transfer_scale), decode_fixed(b.probes[p].transfer[c][k][i], transfer_scale), i == 0 ? 0.2821f : 0.9772f);
+            for (std::size_t i = 0; i < sh_count; ++i)
+                differ(decode_fixed(a.probes[p].transfer[c][k][i], transfer_scale),
+                       decode_fixed(b.probes[p].transfer[c][k][i], transfer_scale),
+                       i == 0 ? 0.2821f : 0.9772f);
             differ(irradiance(a, c, k), irradiance(b, c, k), bake::static_irradiance_range);
         }
     }
@@ -78,10 +103,12 @@ float error_of_probe(const Sector& a, const Sector& b, std::size_t p) {
 
 // Of all probes; more than any where they stand elsewhere.
 float error_between(const Sector& a, const Sector& b) {
-    if (a.probes.size() != b.probes.size() || a.grid != b.grid) return 9;
+    if (a.probes.size() != b.probes.size() || a.grid != b.grid)
+        return 9;
     float worst = 0;
     for (std::size_t p = 0; p < a.probes.size(); ++p) {
-        if (a.probes[p].position != b.probes[p].position) return 9;
+        if (a.probes[p].position != b.probes[p].position)
+            return 9;
         worst = std::max(worst, error_of_probe(a, b, p));
     }
     return worst;
@@ -92,16 +119,20 @@ struct Tally {
 };
 
 // Bakes both and holds every verdict against them.
-Tally check(const Yard& before, const Yard& after, const bake::Settings& settings, float tolerance, const std::string& what) {
+Tally check(const Yard& before, const Yard& after, const bake::Settings& settings, float tolerance,
+            const std::string& what) {
     const trace::FloatMode float_mode;
     const auto old_world = open_world(before.build()), new_world = open_world(after.build());
-    const auto changes = bake::changes_between(bake::take_inventory(*old_world), bake::take_inventory(*new_world));
+    const auto changes =
+        bake::changes_between(bake::take_inventory(*old_world), bake::take_inventory(*new_world));
     Tally tally;
     for (std::int32_t j = -1; j <= 1; ++j) {
         for (std::int32_t i = -1; i <= 1; ++i) {
-            const bake::BakedSector was = bake::bake_sector(*old_world, {i, j}, settings).value(), is = bake::bake_sector(*new_world, {i, j}, settings).value();
+            const bake::BakedSector was = bake::bake_sector(*old_world, {i, j}, settings).value(),
+                                    is = bake::bake_sector(*new_world, {i, j}, settings).value();
             const auto footprint = bake::decode_footprint(bake::encode_footprint(was.footprint)).value();
-            const bake::Assessment assessment = bake::assess(footprint, settings, changes, tolerance, *new_world);
+            const bake::Assessment assessment =
+                bake::assess(footprint, settings, changes, tolerance, *new_world);
             const bool same = encoded(was.sector) == encoded(is.sector);
             tally.same += same ? 1 : 0;
             switch (assessment.verdict) {
@@ -112,7 +143,9 @@ Tally check(const Yard& before, const Yard& after, const bake::Settings& setting
                 case bake::Verdict::near_hit:
                     ++tally.near_hits;
                     EXPECT_LE(assessment.bound, tolerance);
-                    EXPECT_LE(error_between(was.sector, is.sector), assessment.bound + 0x1p-13f) << what << ": sector (" << i << ", " << j << "), " << bake::describe(assessment, changes);
+                    EXPECT_LE(error_between(was.sector, is.sector), assessment.bound + 0x1p-13f)
+                        << what << ": sector (" << i << ", " << j << "), "
+                        << bake::describe(assessment, changes);
                     break;
                 case bake::Verdict::rebake:
                     ++tally.rebakes;
@@ -129,21 +162,34 @@ std::string edit(Yard& yard, std::mt19937& random) {
     Yard::Thing& thing = yard.things[random() % yard.things.size()];
     switch (random() % 9) {
         case 0:
-        case 1: thing.at += glm::dvec3(shift(random), 0, shift(random)); return thing.name + " moved";
+        case 1:
+            thing.at += glm::dvec3(shift(random), 0, shift(random));
+            return thing.name + " moved";
         case 2: {
             const std::string name = thing.name;
             yard.things.erase(yard.things.begin() + (&thing - yard.things.data()));
             return name + " deleted";
         }
-        case 3: yard.things.push_back({"new", "vegetation", 2, {place(random), 0, -place(random)}}); return "a tree added";
-        case 4: yard.colours[random() % 3].y *= static_cast<float>(share(random)); return "a material recoloured";
-        case 5: thing.role = thing.role.empty() ? "vegetation" : ""; return thing.name + " has another role";
-        case 6: yard.crown_m *= 1.1f; return "the trees' mesh edited";
+        case 3:
+            yard.things.push_back({"new", "vegetation", 2, {place(random), 0, -place(random)}});
+            return "a tree added";
+        case 4:
+            yard.colours[random() % 3].y *= static_cast<float>(share(random));
+            return "a material recoloured";
+        case 5:
+            thing.role = thing.role.empty() ? "vegetation" : "";
+            return thing.name + " has another role";
+        case 6:
+            yard.crown_m *= 1.1f;
+            return "the trees' mesh edited";
         case 7:
-            if (yard.lamps.empty()) return "nothing";
+            if (yard.lamps.empty())
+                return "nothing";
             yard.lamps[0].x += 0.5;
             return "a lamp moved";
-        default: yard.probes.push_back({place(random), 2, -place(random)}); return "a probe added";
+        default:
+            yard.probes.push_back({place(random), 2, -place(random)});
+            return "a probe added";
     }
 }
 
@@ -155,7 +201,8 @@ TEST_P(RandomEdits, HoldWhatIsPromised) {
     const bake::Settings settings = settings_of_yard(64, GetParam() % 4 == 1, GetParam() % 3 == 0 ? 0 : 3);
     for (int n = 0; n < 4; ++n) {
         Yard edited = yard;
-        const std::string what = "seed " + std::to_string(GetParam()) + ", edit " + std::to_string(n) + ": " + edit(edited, random);
+        const std::string what = "seed " + std::to_string(GetParam()) + ", edit " + std::to_string(n) + ": " +
+                                 edit(edited, random);
         check(yard, edited, settings, n % 2 == 0 ? 0 : 1 / 32.0f, what);
         yard = edited;
     }
@@ -180,7 +227,8 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
     std::map<map::SectorCoordinate, State> states;
     std::size_t taken_over = 0, baked_again = 0, off = 0;
     for (int n = 0; n < 8; ++n) {
-        const std::string what = "seed " + std::to_string(GetParam()) + ", " + std::to_string(n) + ": " + (n == 0 ? "" : edit(yard, random));
+        const std::string what = "seed " + std::to_string(GetParam()) + ", " + std::to_string(n) + ": " +
+                                 (n == 0 ? "" : edit(yard, random));
         const auto world = open_world(yard.build());
         const bake::Inventory inventory = bake::take_inventory(*world);
         for (std::int32_t j = -1; j <= 1; ++j) {
@@ -194,7 +242,10 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
                 State& state = known->second;
                 const auto changes = bake::changes_between(state.inventory, inventory);
                 // As it comes back from the store.
-                bake::EarlierBake earlier{state.baked.sector, bake::decode_footprint(bake::encode_footprint(state.baked.footprint)).value(), {}};
+                bake::EarlierBake earlier{
+                    state.baked.sector,
+                    bake::decode_footprint(bake::encode_footprint(state.baked.footprint)).value(),
+                    {}};
                 earlier.assessment = bake::assess(earlier.footprint, settings, changes, tolerance, *world);
                 if (earlier.assessment.verdict == bake::Verdict::rebake) {
                     state = {bake::bake_sector(*world, {i, j}, settings, &earlier).value(), inventory};
@@ -202,15 +253,20 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
                     baked_again += state.baked.sector.probes.size() - state.baked.probes_taken_over;
                     ASSERT_LE(error_between(state.baked.sector, fresh.sector), 1) << what;
                     for (std::size_t p = 0; p < fresh.sector.probes.size(); ++p) {
-                        const float bound = state.baked.footprint.probes[p].share * state.baked.footprint.gain();
+                        const float bound =
+                            state.baked.footprint.probes[p].share * state.baked.footprint.gain();
                         off += bound > 0 ? 1 : 0;
-                        EXPECT_LE(error_of_probe(state.baked.sector, fresh.sector, p), bound + (bound > 0 ? 0x1p-13f : 0)) << what << ", probe " << p;
+                        EXPECT_LE(error_of_probe(state.baked.sector, fresh.sector, p),
+                                  bound + (bound > 0 ? 0x1p-13f : 0))
+                            << what << ", probe " << p;
                     }
                 }
                 if (tolerance == 0) {
-                    EXPECT_EQ(encoded(state.baked.sector), encoded(fresh.sector)) << what << ", sector (" << i << ", " << j << ")";
+                    EXPECT_EQ(encoded(state.baked.sector), encoded(fresh.sector))
+                        << what << ", sector (" << i << ", " << j << ")";
                 } else {
-                    EXPECT_LE(error_between(state.baked.sector, fresh.sector), tolerance + 0x1p-13f) << what << ", sector (" << i << ", " << j << ")";
+                    EXPECT_LE(error_between(state.baked.sector, fresh.sector), tolerance + 0x1p-13f)
+                        << what << ", sector (" << i << ", " << j << ")";
                 }
             }
         }
@@ -222,25 +278,32 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ChainsOfEdits, testing::Range(1u, 11u));
 
-// What placement asked once is not asked again: a ray of a solid test that may end otherwise by now is one less that has to change.
+// What placement asked once is not asked again: a ray of a solid test that may end otherwise by now is one
+// less that has to change.
 TEST(EarlierBake, RaysOfSolidTestsAreUsedUp) {
     const trace::FloatMode float_mode;
     const Yard yard(3, false);
     const bake::Settings settings = settings_of_yard(32, false);
     const auto world = open_world(yard.build());
     const bake::BakedSector was = bake::bake_sector(*world, {0, 0}, settings).value();
-    bake::EarlierBake earlier{was.sector, was.footprint, bake::assess(was.footprint, settings, {}, 0, *world)};
+    bake::EarlierBake earlier{was.sector, was.footprint,
+                              bake::assess(was.footprint, settings, {}, 0, *world)};
     ASSERT_EQ(earlier.assessment.flips.size(), was.footprint.solid_tests.size());
-    const auto test = static_cast<std::size_t>(std::ranges::max_element(was.footprint.solid_tests, {}, &bake::SolidTest::to_flip) - was.footprint.solid_tests.begin());
+    const auto test = static_cast<std::size_t>(
+        std::ranges::max_element(was.footprint.solid_tests, {}, &bake::SolidTest::to_flip) -
+        was.footprint.solid_tests.begin());
     const bake::SolidTest before = was.footprint.solid_tests[test];
     ASSERT_GE(before.to_flip, 2);
     earlier.assessment.flips[test] = 1;
     const auto tests = bake::bake_sector(*world, {0, 0}, settings, &earlier).value().footprint.solid_tests;
-    EXPECT_EQ(std::ranges::count(tests, bake::SolidTest{before.position, static_cast<std::uint8_t>(before.to_flip - 1)}), 1);
+    EXPECT_EQ(std::ranges::count(
+                  tests, bake::SolidTest{before.position, static_cast<std::uint8_t>(before.to_flip - 1)}),
+              1);
     EXPECT_EQ(std::ranges::count(tests, before), 0);
 }
 
-// What is taken over may have been seen among brighter surfaces, and what is new shines on those when they come back.
+// What is taken over may have been seen among brighter surfaces, and what is new shines on those when they
+// come back.
 TEST(EarlierBake, TheGainIsOfTheBrighterMap) {
     const trace::FloatMode float_mode;
     const Yard yard(3, true);
@@ -249,9 +312,12 @@ TEST(EarlierBake, TheGainIsOfTheBrighterMap) {
     const auto world = open_world(yard.build());
     const bake::BakedSector was = bake::bake_sector(*world, {0, 0}, settings).value();
     ASSERT_GT(was.footprint.static_gain, 0);
-    bake::EarlierBake earlier{was.sector, was.footprint, bake::assess(was.footprint, settings, {}, settings.tolerance, *world)};
+    bake::EarlierBake earlier{was.sector, was.footprint,
+                              bake::assess(was.footprint, settings, {}, settings.tolerance, *world)};
     earlier.assessment.static_gain = 0;
-    const auto footprint = [&] { return bake::bake_sector(*world, {0, 0}, settings, &earlier).value().footprint; };
+    const auto footprint = [&] {
+        return bake::bake_sector(*world, {0, 0}, settings, &earlier).value().footprint;
+    };
     earlier.footprint.most_scattered = 2 * was.footprint.most_scattered;
     // As it was, exactly: nothing is left of the map before.
     EXPECT_EQ(footprint().static_gain, was.footprint.static_gain);
@@ -272,22 +338,27 @@ TEST(EarlierBake, OfOtherHeightsOrOfAnotherFileIsNotUsed) {
     tower.things.push_back({"tower", "", 1, {100, 60, -100}});
     const bake::Settings settings = settings_of_yard(32, false);
     const auto before = open_world(yard.build()), after = open_world(tower.build());
-    const bake::BakedSector was = bake::bake_sector(*before, {0, 0}, settings).value(), is = bake::bake_sector(*after, {0, 0}, settings).value();
+    const bake::BakedSector was = bake::bake_sector(*before, {0, 0}, settings).value(),
+                            is = bake::bake_sector(*after, {0, 0}, settings).value();
     const auto changes = bake::changes_between(bake::take_inventory(*before), bake::take_inventory(*after));
-    bake::EarlierBake earlier{was.sector, was.footprint, bake::assess(was.footprint, settings, changes, 0, *after)};
+    bake::EarlierBake earlier{was.sector, was.footprint,
+                              bake::assess(was.footprint, settings, changes, 0, *after)};
     const bake::BakedSector higher = bake::bake_sector(*after, {0, 0}, settings, &earlier).value();
     EXPECT_EQ(higher.probes_taken_over, 0u);
     EXPECT_EQ(encoded(higher.sector), encoded(is.sector));
     earlier = {is.sector, is.footprint, bake::assess(is.footprint, settings, {}, 0, *after)};
-    EXPECT_EQ(bake::bake_sector(*after, {0, 0}, settings, &earlier).value().probes_taken_over, is.sector.probes.size());
+    EXPECT_EQ(bake::bake_sector(*after, {0, 0}, settings, &earlier).value().probes_taken_over,
+              is.sector.probes.size());
     earlier.sector.probes.pop_back();
-    EXPECT_EQ(encoded(bake::bake_sector(*after, {0, 0}, settings, &earlier).value().sector), encoded(is.sector));
+    EXPECT_EQ(encoded(bake::bake_sector(*after, {0, 0}, settings, &earlier).value().sector),
+              encoded(is.sector));
 }
 
 TEST(Assessment, TheSameMapIsAllHits) {
     const Yard yard(3, true);
     Yard renamed = yard;
-    for (auto& thing : renamed.things) thing.name += "_renamed";
+    for (auto& thing : renamed.things)
+        thing.name += "_renamed";
     EXPECT_EQ(check(yard, renamed, settings_of_yard(64, false), 0, "renamed").hits, 9);
 }
 
@@ -305,7 +376,8 @@ TEST(Assessment, FirstRaysCountByThemselves) {
     Yard yard(3, false);
     yard.things.clear();
     Yard high = yard;
-    high.things.push_back({"cloud", "", 1, {98, 25, -98}});  // world (98, 98), 25 m up, in the north-eastern sector
+    high.things.push_back(
+        {"cloud", "", 1, {98, 25, -98}});  // world (98, 98), 25 m up, in the north-eastern sector
     const Tally tally = check(yard, high, settings_of_yard(256, false, 0), 0, "cloud");
     EXPECT_GT(9 - tally.same, 3);
     EXPECT_LE(tally.hits, tally.same);
@@ -317,14 +389,16 @@ TEST(Assessment, PlacementLooksWhereNoRayGoes) {
         GltfBuilder b;
         const int both_sides = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}, .double_sided = true});
         b.add_node({.mesh = b.add_mesh(ground(150), both_sides), .name = "ground"});
-        if (dug) b.add_node({.mesh = b.add_mesh(box({10, -10, -18}, {22, -9, -6})), .name = "floor"});
+        if (dug)
+            b.add_node({.mesh = b.add_mesh(box({10, -10, -18}, {22, -9, -6})), .name = "floor"});
         return open_world(b);
     };
     const trace::FloatMode float_mode;
     const bake::Settings settings = settings_of_yard(64, false);
     const auto before = cellar(false), after = cellar(true);
     const auto changes = bake::changes_between(bake::take_inventory(*before), bake::take_inventory(*after));
-    const bake::BakedSector was = bake::bake_sector(*before, {0, 0}, settings).value(), is = bake::bake_sector(*after, {0, 0}, settings).value();
+    const bake::BakedSector was = bake::bake_sector(*before, {0, 0}, settings).value(),
+                            is = bake::bake_sector(*after, {0, 0}, settings).value();
     ASSERT_GT(is.sector.probes.size(), was.sector.probes.size());
     const bake::Assessment assessment = bake::assess(was.footprint, settings, changes, 1 / 32.0f, *after);
     EXPECT_EQ(assessment.verdict, bake::Verdict::rebake);
@@ -336,7 +410,8 @@ TEST(Assessment, ToleranceLetsAFarTreeBe) {
     Yard moved = yard;
     moved.things.back().at = {-62, 0, 62};
     bake::Settings settings = settings_of_yard(1024, false);
-    const Tally exact = check(yard, moved, settings, 0, "exact"), near = check(yard, moved, settings, 1 / 32.0f, "near");
+    const Tally exact = check(yard, moved, settings, 0, "exact"),
+                near = check(yard, moved, settings, 1 / 32.0f, "near");
     EXPECT_EQ(exact.near_hits, 0);
     EXPECT_GT(near.near_hits, 0);
     EXPECT_LT(near.rebakes, exact.rebakes);
@@ -357,11 +432,15 @@ TEST(Assessment, AnEmissiveEndCounts) {
     const auto beam = [](double shift) {
         GltfBuilder b;
         b.add_node({.mesh = b.add_mesh(ground(150), b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}))});
-        const int grey = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}), glowing = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}});
+        const int grey = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}),
+                  glowing = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}});
         b.json["materials"][static_cast<std::size_t>(glowing)]["emissiveFactor"] = {1, 1, 1};
-        const int mesh = b.add_mesh(box({120, 3, -1}, {140, 4, 0}), grey), end = b.add_mesh(quad({119.9f, 3, -1}, {119.9f, 3, 0}, {119.9f, 4, 0}, {119.9f, 4, -1}), glowing);
+        const int mesh = b.add_mesh(box({120, 3, -1}, {140, 4, 0}), grey),
+                  end = b.add_mesh(quad({119.9f, 3, -1}, {119.9f, 3, 0}, {119.9f, 4, 0}, {119.9f, 4, -1}),
+                                   glowing);
         auto& meshes = b.json["meshes"];
-        meshes[static_cast<std::size_t>(mesh)]["primitives"].push_back(meshes[static_cast<std::size_t>(end)]["primitives"][0]);
+        meshes[static_cast<std::size_t>(mesh)]["primitives"].push_back(
+            meshes[static_cast<std::size_t>(end)]["primitives"][0]);
         b.add_node({.mesh = mesh, .translation = glm::dvec3(0, shift, 0), .name = "beam"});
         b.add_node({.translation = glm::dvec3(29.5, 3.5, -0.5), .role = "probe"});
         return open_world(b);
@@ -376,7 +455,9 @@ TEST(Assessment, AnEmissiveEndCounts) {
     const bake::Assessment assessment = bake::assess(footprint, settings, changes, 0, *after);
     int in_reach = 0;
     for (std::size_t p = 0; p < footprint.probes.size(); ++p) {
-        if (glm::distance(placement::metres(footprint.probes[p].position), light.centre) - light.radius_m > settings.reach_m) continue;
+        if (glm::distance(placement::metres(footprint.probes[p].position), light.centre) - light.radius_m >
+            settings.reach_m)
+            continue;
         ++in_reach;
         EXPECT_GE(assessment.probe_bounds[p], 1);
     }
@@ -390,8 +471,10 @@ TEST(Inventory, ComesBackAsItWasStored) {
     const auto back = bake::decode_inventory(bytes);
     ASSERT_TRUE(back);
     EXPECT_TRUE(bake::changes_between(inventory, *back).empty());
-    for (std::size_t n = 0; n < inventory.items.size(); ++n) EXPECT_EQ(back->items[n].name, inventory.items[n].name);
-    for (std::size_t size = 0; size < bytes.size(); size += 53) EXPECT_FALSE(bake::decode_inventory(std::span(bytes).first(size)));
+    for (std::size_t n = 0; n < inventory.items.size(); ++n)
+        EXPECT_EQ(back->items[n].name, inventory.items[n].name);
+    for (std::size_t size = 0; size < bytes.size(); size += 53)
+        EXPECT_FALSE(bake::decode_inventory(std::span(bytes).first(size)));
 }
 
 TEST(Inventory, ChangesAreNamed) {
@@ -399,9 +482,11 @@ TEST(Inventory, ChangesAreNamed) {
     const auto change_of = [&](const std::function<void(Yard&)>& edit_it) {
         Yard other = yard;
         edit_it(other);
-        const auto changes = bake::changes_between(bake::take_inventory(*open_world(yard.build())), bake::take_inventory(*open_world(other.build())));
+        const auto changes = bake::changes_between(bake::take_inventory(*open_world(yard.build())),
+                                                   bake::take_inventory(*open_world(other.build())));
         std::string text;
-        for (const bake::Change& change : changes) text += bake::describe(change) + ";";
+        for (const bake::Change& change : changes)
+            text += bake::describe(change) + ";";
         return text;
     };
     EXPECT_EQ(change_of([](Yard&) {}), "");

@@ -40,15 +40,18 @@ using Files = std::map<map::SectorCoordinate, std::vector<std::uint8_t>>;
 Files bake_all(bake::World& world, const bake::Settings& settings, bool backwards) {
     std::vector<map::SectorCoordinate> sectors;
     for (std::int32_t j = -1; j <= 1; ++j) {
-        for (std::int32_t i = -1; i <= 1; ++i) sectors.push_back({i, j});
+        for (std::int32_t i = -1; i <= 1; ++i)
+            sectors.push_back({i, j});
     }
-    if (backwards) std::reverse(sectors.begin(), sectors.end());
+    if (backwards)
+        std::reverse(sectors.begin(), sectors.end());
     std::vector<std::vector<std::uint8_t>> bytes(sectors.size());
     tbb::parallel_for(std::size_t{0}, sectors.size(), [&](std::size_t n) {
         bytes[n] = encoded(bake::bake_sector(world, sectors[n], settings).value().sector);
     });
     Files files;
-    for (std::size_t n = 0; n < sectors.size(); ++n) files[sectors[n]] = bytes[n];
+    for (std::size_t n = 0; n < sectors.size(); ++n)
+        files[sectors[n]] = bytes[n];
     return files;
 }
 

@@ -2,8 +2,8 @@
 #include "bakerd/bake/sector_bake.h"
 #include "tests/bake/worlds.h"
 
-#include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
+#include <glm/gtc/constants.hpp>
 
 #include <array>
 #include <cmath>
@@ -17,8 +17,8 @@ constexpr std::uint32_t rays = 2048;
 // Sums of 2,048 floats in double: what remains is the rounding of single weights.
 constexpr double rounding = 1e-5;
 
-// From 1 m above a plane, what lies beyond the reach of 512 m is a strip 1/512 high below the horizon: 0.52/512 of
-// a lobe that leans to the horizon, and 2,048 samples meet it two times, give or take two.
+// From 1 m above a plane, what lies beyond the reach of 512 m is a strip 1/512 high below the horizon:
+// 0.52/512 of a lobe that leans to the horizon, and 2,048 samples meet it two times, give or take two.
 constexpr double horizon_strip = 3 * 0.52 / 512;
 
 // The part of a lobe around the three upward directions that lies above the horizon, (1 + 0.577350) / 2.
@@ -31,14 +31,16 @@ TEST(ExactAnswers, NoGeometryGivesOpenSkyAndNoTransfer) {
     const bake::ProbeLight light = light_at(*world, {3, 4, 5}, rays);
     EXPECT_EQ(light.sky_visibility, (std::array<float, 4>{1, 1, 1, 0}));
     for (const auto& channel : light.transfer) {
-        for (const auto& row : channel) EXPECT_EQ(row, (std::array<float, 4>{0, 0, 0, 0}));
+        for (const auto& row : channel)
+            EXPECT_EQ(row, (std::array<float, 4>{0, 0, 0, 0}));
     }
 }
 
 TEST(ExactAnswers, PlaneSendsItsAlbedoBackToTheDownwardDirection) {
     for (const float albedo : {0.2f, 0.5f, 0.9f}) {
         GltfBuilder b;
-        b.add_node({.mesh = b.add_mesh(ground(20000), b.add_material({.colour = {albedo, albedo / 2, 0, 1}}))});
+        b.add_node(
+            {.mesh = b.add_mesh(ground(20000), b.add_material({.colour = {albedo, albedo / 2, 0, 1}}))});
         const auto world = open_world(b);
         const bake::ProbeLight light = light_at(*world, {0, 0, 1}, rays);
         // Hits within the reach of 512 m cover the lower half up to 1/512 of it.
@@ -48,7 +50,9 @@ TEST(ExactAnswers, PlaneSendsItsAlbedoBackToTheDownwardDirection) {
         EXPECT_EQ(under_constant_sky(light, 2, 3), 0);
         for (std::size_t basis = 0; basis < 3; ++basis) {
             EXPECT_EQ(light.sky_visibility[basis], 1);
-            EXPECT_NEAR(under_constant_sky(light, 0, basis), static_cast<double>(albedo) * (1 - open_share[basis]), static_cast<double>(albedo) * horizon_strip);
+            EXPECT_NEAR(under_constant_sky(light, 0, basis),
+                        static_cast<double>(albedo) * (1 - open_share[basis]),
+                        static_cast<double>(albedo) * horizon_strip);
         }
     }
 }
@@ -57,13 +61,19 @@ TEST(ExactAnswers, PlaneSendsItsAlbedoBackToTheDownwardDirection) {
 TEST(ExactAnswers, ClosedRoomIsBlackToTheLastBit) {
     for (const float offset_m : {0.0f, 37.3f, 1000.7f, 9001.1f}) {
         GltfBuilder b;
-        b.add_node({.mesh = b.add_mesh(room({-2, 0, -3}, {2, 3, 3}), b.add_material({.colour = {0.9f, 0.9f, 0.9f, 1}})), .translation = glm::dvec3(offset_m, 10, -offset_m), .rotation = glm::dvec4(0, std::sin(0.3), 0, std::cos(0.3))});
+        b.add_node({.mesh = b.add_mesh(room({-2, 0, -3}, {2, 3, 3}),
+                                       b.add_material({.colour = {0.9f, 0.9f, 0.9f, 1}})),
+                    .translation = glm::dvec3(offset_m, 10, -offset_m),
+                    .rotation = glm::dvec4(0, std::sin(0.3), 0, std::cos(0.3))});
         const auto world = open_world(b);
-        for (const glm::vec3& place : {glm::vec3(0, 0, 11.5f), glm::vec3(0.5f, 1, 10.01f), glm::vec3(-1, -1, 12.9f)}) {
-            const bake::ProbeLight light = light_at(*world, place + glm::vec3(offset_m, offset_m, 0), 16384, 8);
+        for (const glm::vec3& place :
+             {glm::vec3(0, 0, 11.5f), glm::vec3(0.5f, 1, 10.01f), glm::vec3(-1, -1, 12.9f)}) {
+            const bake::ProbeLight light =
+                light_at(*world, place + glm::vec3(offset_m, offset_m, 0), 16384, 8);
             EXPECT_EQ(light.sky_visibility, (std::array<float, 4>{0, 0, 0, 0})) << offset_m;
             for (const auto& channel : light.transfer) {
-                for (const auto& row : channel) EXPECT_EQ(row, (std::array<float, 4>{0, 0, 0, 0})) << offset_m;
+                for (const auto& row : channel)
+                    EXPECT_EQ(row, (std::array<float, 4>{0, 0, 0, 0})) << offset_m;
             }
             EXPECT_EQ(light.back_hits, 0u) << offset_m;
         }
@@ -80,12 +90,14 @@ TEST(ExactAnswers, RoomWithAcuteCornersIsBlackToTheLastBit) {
         // Fronts inwards: floor up, roof down, gables towards the middle.
         tent.indices = {0, 3, 2, 0, 2, 1, 3, 4, 5, 3, 5, 2, 0, 1, 5, 0, 5, 4, 0, 4, 3, 1, 2, 5};
         GltfBuilder b;
-        b.add_node({.mesh = b.add_mesh(tent, b.add_material({.colour = {0.95f, 0.95f, 0.95f, 1}})), .translation = glm::dvec3(offset_m, 0, 0)});
+        b.add_node({.mesh = b.add_mesh(tent, b.add_material({.colour = {0.95f, 0.95f, 0.95f, 1}})),
+                    .translation = glm::dvec3(offset_m, 0, 0)});
         const auto world = open_world(b);
         const bake::ProbeLight light = light_at(*world, {offset_m, 0, 0.4f}, 65536, 8);
         EXPECT_EQ(light.sky_visibility, (std::array<float, 4>{0, 0, 0, 0}));
         for (const auto& channel : light.transfer) {
-            for (const auto& row : channel) EXPECT_EQ(row, (std::array<float, 4>{0, 0, 0, 0}));
+            for (const auto& row : channel)
+                EXPECT_EQ(row, (std::array<float, 4>{0, 0, 0, 0}));
         }
     }
 }
@@ -109,14 +121,18 @@ TEST(ExactAnswers, EnergyOfBrightClutterStaysBelowOne) {
     const int white = b.add_material({.colour = {0.95f, 0.95f, 0.95f, 1}, .double_sided = true});
     b.add_node({.mesh = b.add_mesh(ground(60), white)});
     for (int n = 0; n < 60; ++n) {
-        const glm::vec3 low(place(random), std::abs(place(random)) * 0.3f, place(random)), extent(size(random), size(random), size(random));
+        const glm::vec3 low(place(random), std::abs(place(random)) * 0.3f, place(random)),
+            extent(size(random), size(random), size(random));
         b.add_node({.mesh = b.add_mesh(box(low, low + extent), white)});
     }
     const auto world = open_world(b);
     for (int n = 0; n < 24; ++n) {
-        const bake::ProbeLight light = light_at(*world, {place(random), place(random), std::abs(place(random)) * 0.4f}, 512, 8);
+        const bake::ProbeLight light =
+            light_at(*world, {place(random), place(random), std::abs(place(random)) * 0.4f}, 512, 8);
         for (std::size_t basis = 0; basis < basis_count; ++basis) {
-            EXPECT_LE(under_constant_sky(light, 0, basis) + static_cast<double>(light.sky_visibility[basis]) * open_share[basis], 1 + rounding);
+            EXPECT_LE(under_constant_sky(light, 0, basis) +
+                          static_cast<double>(light.sky_visibility[basis]) * open_share[basis],
+                      1 + rounding);
             EXPECT_GE(light.transfer[0][basis][0], 0);
         }
     }
@@ -137,8 +153,12 @@ TEST(ExactAnswers, BakedPlaneSectorHoldsThemInItsFile) {
         EXPECT_EQ(position_m(sector, probe)[2], 1.0f);
         // One step of the fixed point, and the strip beyond the reach.
         const double step = 0.5 / 32767 / static_cast<double>(sh_y0);
-        EXPECT_NEAR(static_cast<double>(decode_fixed(probe.transfer[0][3][0], transfer_scale)) / static_cast<double>(sh_y0), 0.5, step + 1e-4);
-        EXPECT_NEAR(static_cast<double>(decode_fixed(probe.transfer[1][3][0], transfer_scale)) / static_cast<double>(sh_y0), 0.25, step + 1e-4);
+        EXPECT_NEAR(static_cast<double>(decode_fixed(probe.transfer[0][3][0], transfer_scale)) /
+                        static_cast<double>(sh_y0),
+                    0.5, step + 1e-4);
+        EXPECT_NEAR(static_cast<double>(decode_fixed(probe.transfer[1][3][0], transfer_scale)) /
+                        static_cast<double>(sh_y0),
+                    0.25, step + 1e-4);
     }
     EXPECT_FALSE(encoded(sector).empty());
 }

@@ -1,4 +1,5 @@
-// The record of what a sector depends on: nothing that a ray crosses is missing, and it survives being stored.
+// The record of what a sector depends on: nothing that a ray crosses is missing, and it survives being
+// stored.
 #include "bakerd/bake/footprint.h"
 
 #include "bakerd/bake/footprint_recorder.h"
@@ -30,7 +31,8 @@ TEST(WeightCode, RoundsUpFinelyWhereTolerancesLie) {
         }
         before = code;
     }
-    for (std::uint8_t code = 0; code < bake::most_weight_code; ++code) EXPECT_EQ(bake::weight_code(bake::weight_of_code(code)), code);
+    for (std::uint8_t code = 0; code < bake::most_weight_code; ++code)
+        EXPECT_EQ(bake::weight_code(bake::weight_of_code(code)), code);
 }
 
 TEST(FootprintGrid, CoversTheDistanceAndTheHeights) {
@@ -50,14 +52,20 @@ TEST(FootprintGrid, CoversTheDistanceAndTheHeights) {
     }
 }
 
-bake::Shares even(float share) { return {share, share, share, share}; }
+bake::Shares even(float share) {
+    return {share, share, share, share};
+}
 
-// Whatever point of a ray is asked for, its cell is marked, and its block has the ray's weight, once. Rays as long as the grid goes, from below and above it too.
+// Whatever point of a ray is asked for, its cell is marked, and its block has the ray's weight, once. Rays as
+// long as the grid goes, from below and above it too.
 TEST(FootprintRecorder, NoPointOfARayIsMissing) {
     std::mt19937 random(5);
-    for (const auto& [distance_m, length_m, top_m] : {std::tuple(200.0f, 90.0f, 40.0f), std::tuple(560.0f, 390.0f, 120.0f), std::tuple(1100.0f, 930.0f, 300.0f), std::tuple(2500.0f, 2330.0f, 90.0f)}) {
+    for (const auto& [distance_m, length_m, top_m] :
+         {std::tuple(200.0f, 90.0f, 40.0f), std::tuple(560.0f, 390.0f, 120.0f),
+          std::tuple(1100.0f, 930.0f, 300.0f), std::tuple(2500.0f, 2330.0f, 90.0f)}) {
         const bake::FootprintGrid grid = bake::footprint_grid({0, 0}, distance_m, -10, top_m);
-        std::uniform_real_distribution<float> place(-100, 160), height(grid.low().z - 20, grid.high().z + 20), along(0, 1), sphere(-1, 1);
+        std::uniform_real_distribution<float> place(-100, 160), height(grid.low().z - 20, grid.high().z + 20),
+            along(0, 1), sphere(-1, 1);
         // Of distances; those of places are far smaller.
         const float rounding_m = 0.01f + length_m * 0x1p-18f;
         for (int n = 0; n < 400; ++n) {
@@ -65,26 +73,40 @@ TEST(FootprintRecorder, NoPointOfARayIsMissing) {
             bake::FootprintRecorder& recorder = recorders.of_this_thread();
             const auto quarter = static_cast<std::size_t>(n) % bake::quarter_count;
             recorder.begin(quarter);
-            glm::vec3 direction(sphere(random), sphere(random), n % 3 == 0 ? 0.0f : sphere(random) * (n % 2 == 0 ? 1.0f : 0.2f));
-            if (n % 7 == 0) direction = {0, 0, 1};
-            if (n % 11 == 0) direction.x = 0;
-            if (glm::length(direction) < 0.1f) continue;
-            const trace::Ray ray{{place(random), place(random), height(random)}, glm::normalize(direction), length_m};
-            if (n % 2 == 0) recorder.path(ray, ray.far_m, even(0.01f), 3);
-            else recorder.lone(ray, even(0.01f));
+            glm::vec3 direction(sphere(random), sphere(random),
+                                n % 3 == 0 ? 0.0f : sphere(random) * (n % 2 == 0 ? 1.0f : 0.2f));
+            if (n % 7 == 0)
+                direction = {0, 0, 1};
+            if (n % 11 == 0)
+                direction.x = 0;
+            if (glm::length(direction) < 0.1f)
+                continue;
+            const trace::Ray ray{
+                {place(random), place(random), height(random)}, glm::normalize(direction), length_m};
+            if (n % 2 == 0)
+                recorder.path(ray, ray.far_m, even(0.01f), 3);
+            else
+                recorder.lone(ray, even(0.01f));
             bake::Footprint footprint;
             recorders.store(footprint);
             for (int k = 0; k < 300; ++k) {
                 const glm::vec3 point = ray.origin + ray.direction * (ray.far_m * along(random));
-                if (point.z <= grid.low().z + 0.1f || point.z >= grid.high().z - 0.1f) continue;
+                if (point.z <= grid.low().z + 0.1f || point.z >= grid.high().z - 0.1f)
+                    continue;
                 bool marked = false;
                 for (const float dx : {-rounding_m, 0.0f, rounding_m}) {
                     for (const float dy : {-rounding_m, 0.0f, rounding_m}) {
                         for (const float dz : {-rounding_m, 0.0f, rounding_m}) {
-                            const glm::ivec3 cell(glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
-                            if (cell.x < 0 || cell.y < 0 || cell.z < 0 || cell.x >= grid.columns || cell.y >= grid.rows || cell.z >= grid.layers) continue;
-                            const bool crossed = (footprint.crossed[grid.column(cell.x, cell.y)] >> cell.z & 1u) != 0;
-                            marked |= crossed && footprint.weight(grid.block(cell.x, cell.y, cell.z), quarter) == bake::weight_code(0.01f);
+                            const glm::ivec3 cell(
+                                glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) /
+                                           glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
+                            if (cell.x < 0 || cell.y < 0 || cell.z < 0 || cell.x >= grid.columns ||
+                                cell.y >= grid.rows || cell.z >= grid.layers)
+                                continue;
+                            const bool crossed =
+                                (footprint.crossed[grid.column(cell.x, cell.y)] >> cell.z & 1u) != 0;
+                            marked |= crossed && footprint.weight(grid.block(cell.x, cell.y, cell.z),
+                                                                  quarter) == bake::weight_code(0.01f);
                         }
                     }
                 }
@@ -118,11 +140,13 @@ TEST(FootprintRecorder, SharesAddUpInAProbeAndTheLargestOfAQuarterCounts) {
     }
     recorder.lone(aside, {0, 0, 0, 0});
     recorder.begin(0);
-    for (std::uint32_t path = 0; path < 100; ++path) recorder.path(up, 2, even(path % 2 == 0 ? 0x1p-4f : 1e12f), path);
+    for (std::uint32_t path = 0; path < 100; ++path)
+        recorder.path(up, 2, even(path % 2 == 0 ? 0x1p-4f : 1e12f), path);
     bake::Footprint footprint;
     recorders.store(footprint);
     const auto weight = [&](const trace::Ray& ray, std::size_t quarter) {
-        const glm::ivec3 cell(glm::floor((ray.origin - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
+        const glm::ivec3 cell(
+            glm::floor((ray.origin - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
         return bake::weight_of_code(footprint.weight(grid.block(cell.x, cell.y, cell.z), quarter));
     };
     EXPECT_EQ(weight(up, 3), 0x1p-8f);
@@ -135,14 +159,17 @@ TEST(FootprintRecorder, SharesAddUpInAProbeAndTheLargestOfAQuarterCounts) {
 }
 
 TEST(Footprint, QuartersAreSquaresOf32Metres) {
-    const auto quarter = [](double x, double y) { return bake::quarter_of({-1, 2}, placement::Position(glm::round(glm::dvec3(x, y, 0) * 1024.0))); };
+    const auto quarter = [](double x, double y) {
+        return bake::quarter_of({-1, 2}, placement::Position(glm::round(glm::dvec3(x, y, 0) * 1024.0)));
+    };
     EXPECT_EQ(quarter(-64, 128), 0u);
     EXPECT_EQ(quarter(-64 + 31.9, 128 + 31.9), 0u);
     EXPECT_EQ(quarter(-64 + 32, 128), 1u);
     EXPECT_EQ(quarter(-64, 128 + 32), 2u);
     EXPECT_EQ(quarter(-0.1, 191.9), 3u);
     // What damaged bytes say.
-    EXPECT_LT(bake::quarter_of({INT32_MAX, INT32_MIN}, placement::Position(INT32_MIN, INT32_MAX, 0)), bake::quarter_count);
+    EXPECT_LT(bake::quarter_of({INT32_MAX, INT32_MIN}, placement::Position(INT32_MIN, INT32_MAX, 0)),
+              bake::quarter_count);
 }
 
 // Every ray but the first of each path, to lamps too, is in the record for all of its way.
@@ -151,19 +178,24 @@ TEST(FootprintRecorder, AllLaterRaysOfAProbeAreNoted) {
     const int leaf = b.add_material({.colour = {0.3f, 0.6f, 0.2f, 1}, .double_sided = true});
     b.add_node({.mesh = b.add_mesh(ground(90), b.add_material({.colour = {0.6f, 0.6f, 0.6f, 1}}))});
     b.place(box({8, 0, -22}, {12, 9, -8}));
-    b.add_node({.mesh = b.add_mesh(quad({-20, 2, 5}, {-4, 2, 5}, {-4, 9, 9}, {-20, 9, 9}), leaf), .role = "vegetation"});
-    for (const double x : {-12.0, 30.0}) b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 9000}}), .translation = glm::dvec3(x, 4, -14)});
+    b.add_node({.mesh = b.add_mesh(quad({-20, 2, 5}, {-4, 2, 5}, {-4, 9, 9}, {-20, 9, 9}), leaf),
+                .role = "vegetation"});
+    for (const double x : {-12.0, 30.0})
+        b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 9000}}),
+                    .translation = glm::dvec3(x, 4, -14)});
     const auto world = open_world(b);
     const trace::FloatMode float_mode;
     constexpr float reach_m = 150;
     const auto scene = world->scene_for({0, 0}, 250);
-    const bake::FootprintGrid grid = bake::footprint_grid({0, 0}, 250, scene->bounds().low.z, scene->bounds().high.z);
+    const bake::FootprintGrid grid =
+        bake::footprint_grid({0, 0}, 250, scene->bounds().low.z, scene->bounds().high.z);
     bake::FootprintRecorders recorders(grid);
     recorders.of_this_thread().begin(0);
     bake::RayLog log;
     const glm::vec3 probe(3, 4, 1.5f);
     const bake::SampleTable samples(16, bake::sample_dimensions(3, true));
-    static_cast<void>(bake::integrate_probe(*scene, world->lights(), glm::ivec3(probe * 1024.0f), samples, {3, reach_m, 0}, {&recorders.of_this_thread(), &log}));
+    static_cast<void>(bake::integrate_probe(*scene, world->lights(), glm::ivec3(probe * 1024.0f), samples,
+                                            {3, reach_m, 0}, {&recorders.of_this_thread(), &log}));
     bake::Footprint footprint;
     recorders.store(footprint);
     const float rounding_m = 0.01f;
@@ -172,12 +204,14 @@ TEST(FootprintRecorder, AllLaterRaysOfAProbeAreNoted) {
         ++later;
         for (float at = 0; at <= length_m; at += 0.9f) {
             const glm::vec3 point = ray.origin + ray.direction * at;
-            if (point.z < grid.low().z || point.z >= grid.high().z) continue;
+            if (point.z < grid.low().z || point.z >= grid.high().z)
+                continue;
             bool marked = false;
             for (const float dx : {-rounding_m, 0.0f, rounding_m}) {
                 for (const float dy : {-rounding_m, 0.0f, rounding_m}) {
                     for (const float dz : {-0.01f, 0.0f, 0.01f}) {
-                        const glm::ivec3 cell(glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) / glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
+                        const glm::ivec3 cell(glm::floor((point + glm::vec3(dx, dy, dz) - grid.low()) /
+                                                         glm::vec3(grid.cell_m, grid.cell_m, grid.layer_m)));
                         marked |= (footprint.crossed[grid.column(cell.x, cell.y)] >> cell.z & 1u) != 0;
                     }
                 }
@@ -186,12 +220,14 @@ TEST(FootprintRecorder, AllLaterRaysOfAProbeAreNoted) {
         }
     };
     for (const trace::Ray& ray : log.paths) {
-        if (ray.origin == probe) continue;
+        if (ray.origin == probe)
+            continue;
         const auto hit = scene->closest(ray);
         look(ray, hit ? hit->distance_m : ray.far_m);
     }
     const int paths = later;
-    for (const trace::Ray& ray : log.shadows) look(ray, ray.far_m);
+    for (const trace::Ray& ray : log.shadows)
+        look(ray, ray.far_m);
     EXPECT_GE(paths, 8);
     EXPECT_GT(later - paths, 1);
     EXPECT_EQ(missing, 0);
@@ -201,7 +237,8 @@ bake::Footprint baked_footprint() {
     GltfBuilder b;
     b.add_node({.mesh = b.add_mesh(ground(150), b.add_material({.colour = {0.4f, 0.5f, 0.3f, 1}}))});
     b.place(box({8, 0, -12}, {12, 6, -8}));
-    b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 40}}), .translation = glm::dvec3(20, 3, -20)});
+    b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 40}}),
+                .translation = glm::dvec3(20, 3, -20)});
     bake::Settings settings;
     settings.rays = 64;
     settings.reach_m = 60;
@@ -222,10 +259,12 @@ TEST(Footprint, SmallWeightsAreRaisedWhereTheRecordWouldBeTooLarge) {
     bake::Footprint footprint = baked_footprint();
     std::mt19937 random(11);
     footprint.grid = bake::footprint_grid({0, 0}, 500, 0, 120);
-    footprint.crossed.assign(footprint.grid.column_count(), bake::layers_between(0, footprint.grid.layers - 1));
+    footprint.crossed.assign(footprint.grid.column_count(),
+                             bake::layers_between(0, footprint.grid.layers - 1));
     footprint.weights.resize(footprint.grid.block_count() * bake::quarter_count);
     std::geometric_distribution<int> code(0.3);
-    for (std::uint8_t& weight : footprint.weights) weight = static_cast<std::uint8_t>(std::min(code(random), 15));
+    for (std::uint8_t& weight : footprint.weights)
+        weight = static_cast<std::uint8_t>(std::min(code(random), 15));
     const std::vector<std::uint8_t> bytes = bake::encode_footprint(footprint);
     EXPECT_LE(bytes.size(), bake::most_record_bytes);
     EXPECT_GT(bytes.size(), bake::most_record_bytes * 3 / 4);
@@ -233,10 +272,12 @@ TEST(Footprint, SmallWeightsAreRaisedWhereTheRecordWouldBeTooLarge) {
     ASSERT_TRUE(back);
     // All but the smallest are as they were.
     std::uint8_t least = 15;
-    for (std::size_t n = 0; n < back->weights.size(); ++n) least = back->weights[n] == 0 ? least : std::min(least, back->weights[n]);
+    for (std::size_t n = 0; n < back->weights.size(); ++n)
+        least = back->weights[n] == 0 ? least : std::min(least, back->weights[n]);
     EXPECT_GT(least, 1);
     bake::Footprint raised = footprint;
-    for (std::uint8_t& weight : raised.weights) weight = weight == 0 ? weight : std::max(weight, least);
+    for (std::uint8_t& weight : raised.weights)
+        weight = weight == 0 ? weight : std::max(weight, least);
     EXPECT_EQ(*back, raised);
 }
 
@@ -245,10 +286,13 @@ TEST(Footprint, WeightsStayWhereRaisingThemIsOfNoUse) {
     std::mt19937 random(12);
     footprint.grid = bake::footprint_grid({0, 0}, 500, 0, 120);
     footprint.crossed.resize(footprint.grid.column_count());
-    for (std::uint64_t& column : footprint.crossed) column = random() & bake::layers_between(0, footprint.grid.layers - 1);
+    for (std::uint64_t& column : footprint.crossed)
+        column = random() & bake::layers_between(0, footprint.grid.layers - 1);
     footprint.weights.assign(footprint.grid.block_count() * bake::quarter_count, 0);
-    for (bake::SolidTest test; footprint.solid_tests.size() < 3000; footprint.solid_tests.push_back(test)) test.position = placement::Position(random(), random(), random());
-    for (std::uint8_t& weight : footprint.weights) weight = static_cast<std::uint8_t>(1 + random() % 2);
+    for (bake::SolidTest test; footprint.solid_tests.size() < 3000; footprint.solid_tests.push_back(test))
+        test.position = placement::Position(random(), random(), random());
+    for (std::uint8_t& weight : footprint.weights)
+        weight = static_cast<std::uint8_t>(1 + random() % 2);
     const std::vector<std::uint8_t> bytes = bake::encode_footprint(footprint);
     EXPECT_GT(bytes.size(), bake::most_record_bytes);
     EXPECT_GT(std::ranges::count(bake::decode_footprint(bytes).value().weights, 1), 0);
@@ -257,7 +301,8 @@ TEST(Footprint, WeightsStayWhereRaisingThemIsOfNoUse) {
 TEST(Footprint, OddBytesAreNoRecord) {
     const std::vector<std::uint8_t> bytes = bake::encode_footprint(baked_footprint());
     EXPECT_FALSE(bake::decode_footprint({}));
-    for (std::size_t size = 0; size < bytes.size(); size += 97) EXPECT_FALSE(bake::decode_footprint(std::span(bytes).first(size)));
+    for (std::size_t size = 0; size < bytes.size(); size += 97)
+        EXPECT_FALSE(bake::decode_footprint(std::span(bytes).first(size)));
     std::mt19937 random(3);
     for (int n = 0; n < 500; ++n) {
         std::vector<std::uint8_t> broken = bytes;

@@ -37,7 +37,8 @@ bake::LocalLight random_light(unsigned seed) {
         const float strength = std::pow(10.0f, -6 * uniform());
         for (auto& channel : pair) {
             channel[0] = strength * uniform();
-            for (std::size_t i = 1; i < sh_count; ++i) channel[i] = channel[0] * 1.1547f * (random() % 3 == 0 ? 1 : 2 * uniform() - 1);
+            for (std::size_t i = 1; i < sh_count; ++i)
+                channel[i] = channel[0] * 1.1547f * (random() % 3 == 0 ? 1 : 2 * uniform() - 1);
         }
     }
     return light;
@@ -51,7 +52,8 @@ TEST(LocalEncoding, KeepsEightBitsOfAPairsLargest) {
         std::size_t pair = 0, coarse = 0;
         for (std::size_t p = 0; p < probes; ++p) {
             for (std::size_t s = 0; s < probes; ++s) {
-                if (!has_pair(local.receivers[p], s)) continue;
+                if (!has_pair(local.receivers[p], s))
+                    continue;
                 const LightCodes& codes = local.pairs[pair++];
                 int most = 0, bits = 0;
                 for (const auto& channel : codes) {
@@ -64,11 +66,15 @@ TEST(LocalEncoding, KeepsEightBitsOfAPairsLargest) {
                 // 9 bits only where rounding carried into a new one.
                 ASSERT_TRUE(most / step < 256 || most / step == 256) << most << " in steps of " << step;
                 coarse += step > 1 ? 1u : 0u;
-                const float scale = scale_of_exponent(local.receivers[p].exponent + local.sources[s].exponent);
-                // Half a step for rounding, one more where band 1 was taken below its bound, half a code for fixed point.
+                const float scale =
+                    scale_of_exponent(local.receivers[p].exponent + local.sources[s].exponent);
+                // Half a step for rounding, one more where band 1 was taken below its bound, half a code for
+                // fixed point.
                 const float allowed = scale / fixed_point_max * (1.5f * static_cast<float>(step) + 0.5f);
                 for (std::size_t c = 0; c < channel_count; ++c) {
-                    for (std::size_t i = 0; i < sh_count; ++i) ASSERT_NEAR(decode_fixed(codes[c][i], scale), light.at(p, s)[c][i], allowed + std::abs(light.at(p, s)[c][i]) * 1e-4f);
+                    for (std::size_t i = 0; i < sh_count; ++i)
+                        ASSERT_NEAR(decode_fixed(codes[c][i], scale), light.at(p, s)[c][i],
+                                    allowed + std::abs(light.at(p, s)[c][i]) * 1e-4f);
                 }
             }
         }
@@ -82,7 +88,8 @@ TEST(LocalEncoding, RoundedPairsAreValid) {
         Sector sector;
         sector.probes.resize(probes);
         sector.local_transfer = bake::encode_local(sources, random_light(seed), probes, 512);
-        for (const Finding& finding : validate_sector(write_sector(sector), {.max_findings = 10'000}).findings) {
+        for (const Finding& finding :
+             validate_sector(write_sector(sector), {.max_findings = 10'000}).findings) {
             EXPECT_NE(finding.issue, &issue::local_transfer_range) << finding.path << " " << finding.message;
             EXPECT_NE(finding.issue, &issue::fixed_point_reserved) << finding.path;
         }

@@ -5,8 +5,8 @@
 
 #include <drtv/read.h>
 
-#include <glm/common.hpp>
 #include <gtest/gtest.h>
+#include <glm/common.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -18,15 +18,20 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double sampling = 0.02;  // four standard errors of 4,096 rays a source
 
-bake::LocalLight local_at(bake::World& world, const std::vector<glm::vec3>& places, std::uint32_t rays, std::uint32_t bounces = 2) {
+bake::LocalLight local_at(bake::World& world, const std::vector<glm::vec3>& places, std::uint32_t rays,
+                          std::uint32_t bounces = 2) {
     const trace::FloatMode float_mode;
     const auto scene = world.scene_for({0, 0}, 512);
     std::vector<glm::ivec3> units;
-    for (const glm::vec3& place : places) units.emplace_back(glm::round(place * 1024.0f));
-    return bake::integrate_local(*scene, units, places.size(), *world.samples(rays, bake::local_sample_dimensions(bounces)), {bounces, 512});
+    for (const glm::vec3& place : places)
+        units.emplace_back(glm::round(place * 1024.0f));
+    return bake::integrate_local(*scene, units, places.size(),
+                                 *world.samples(rays, bake::local_sample_dimensions(bounces)),
+                                 {bounces, 512});
 }
 
-// Lamp and probe on one axis over an endless plane: band 0 and the axis of band 1 by one integral over the plane.
+// Lamp and probe on one axis over an endless plane: band 0 and the axis of band 1 by one integral over the
+// plane.
 TEST(LocalTransfer, LampOverAPlane) {
     constexpr double albedo = 0.6;
     GltfBuilder b;
@@ -39,16 +44,23 @@ TEST(LocalTransfer, LampOverAPlane) {
             double mean = 0, down = 0;
             constexpr int steps = 200000;
             for (int n = 0; n < steps; ++n) {
-                const double r = 300 * std::pow((n + 0.5) / steps, 2), dr = 300 * 2 * (n + 0.5) / steps / steps;
-                const double to_probe = r * r + heights[p] * heights[p], to_lamp = r * r + heights[q] * heights[q];
-                const double radiance = albedo / pi * heights[q] / std::sqrt(to_lamp) / std::max(to_lamp, 0.25);
+                const double r = 300 * std::pow((n + 0.5) / steps, 2),
+                             dr = 300 * 2 * (n + 0.5) / steps / steps;
+                const double to_probe = r * r + heights[p] * heights[p],
+                             to_lamp = r * r + heights[q] * heights[q];
+                const double radiance =
+                    albedo / pi * heights[q] / std::sqrt(to_lamp) / std::max(to_lamp, 0.25);
                 const double solid = heights[p] / (to_probe * std::sqrt(to_probe)) * 2 * pi * r * dr;
                 mean += radiance * solid;
                 down += radiance * solid * heights[p] / std::sqrt(to_probe);
             }
             const bake::LocalCoefficients& found = light.at(p, q);
-            EXPECT_NEAR(found[0][0], static_cast<double>(sh_y0) * mean, sampling * static_cast<double>(sh_y0) * mean) << p << " " << q;
-            EXPECT_NEAR(found[0][2], -static_cast<double>(sh_y1) * down * 2 / 3, sampling * static_cast<double>(sh_y1) * down) << p << " " << q;
+            EXPECT_NEAR(found[0][0], static_cast<double>(sh_y0) * mean,
+                        sampling * static_cast<double>(sh_y0) * mean)
+                << p << " " << q;
+            EXPECT_NEAR(found[0][2], -static_cast<double>(sh_y1) * down * 2 / 3,
+                        sampling * static_cast<double>(sh_y1) * down)
+                << p << " " << q;
             EXPECT_NEAR(found[1][0], found[0][0] / 2, 1e-6);
             EXPECT_EQ(found[2][0], 0);
             EXPECT_NEAR(found[0][1], 0, sampling * static_cast<double>(sh_y1) * down);
@@ -60,20 +72,25 @@ TEST(LocalTransfer, LampOverAPlane) {
 TEST(LocalTransfer, FurtherBouncesAreTheGeometricSeries) {
     constexpr double albedo = 0.5, half = 4;
     GltfBuilder b;
-    b.place(room({-half, -half, -half}, {half, half, half}), "", b.add_material({.colour = {albedo, albedo, albedo, 1}}));
+    b.place(room({-half, -half, -half}, {half, half, half}), "",
+            b.add_material({.colour = {albedo, albedo, albedo, 1}}));
     const auto world = open_world(b);
-    // Total light of the room: what the walls get is all that the lamp sends, then the albedo's share of it again. In the
-    // middle of a cube the first bounce is the brightest, so that only the sum of all positions tells; close enough.
+    // Total light of the room: what the walls get is all that the lamp sends, then the albedo's share of it
+    // again. In the middle of a cube the first bounce is the brightest, so that only the sum of all positions
+    // tells; close enough.
     std::array<double, 4> sums{};
     std::mt19937 random(3);
     std::uniform_real_distribution<float> place(-3.5f, 3.5f);
     std::vector<glm::vec3> places;
-    for (int n = 0; n < 60; ++n) places.emplace_back(place(random), place(random), place(random));
+    for (int n = 0; n < 60; ++n)
+        places.emplace_back(place(random), place(random), place(random));
     for (std::uint32_t bounces = 1; bounces <= 4; ++bounces) {
         const bake::LocalLight light = local_at(*world, places, 128, bounces);
-        for (const bake::LocalCoefficients& pair : light.pairs) sums[bounces - 1] += static_cast<double>(pair[0][0]);
+        for (const bake::LocalCoefficients& pair : light.pairs)
+            sums[bounces - 1] += static_cast<double>(pair[0][0]);
     }
-    const double first = sums[0], second = sums[1] - sums[0], third = sums[2] - sums[1], fourth = sums[3] - sums[2];
+    const double first = sums[0], second = sums[1] - sums[0], third = sums[2] - sums[1],
+                 fourth = sums[3] - sums[2];
     EXPECT_NEAR(third / second, albedo, 0.03);
     EXPECT_NEAR(fourth / third, albedo, 0.05);
     EXPECT_GT(second, 0.3 * first);
@@ -92,12 +109,14 @@ TEST(LocalTransfer, PairsAreReciprocal) {
     }
     const auto world = open_world(b);
     std::vector<glm::vec3> places;
-    for (int n = 0; n < 25; ++n) places.emplace_back(place(random), place(random), 7 + size(random));
+    for (int n = 0; n < 25; ++n)
+        places.emplace_back(place(random), place(random), 7 + size(random));
     const bake::LocalLight light = local_at(*world, places, 256);
     double difference = 0, total = 0;
     for (std::size_t p = 0; p < places.size(); ++p) {
         for (std::size_t q = 0; q < p; ++q) {
-            const double there = static_cast<double>(light.at(p, q)[0][0]), back = static_cast<double>(light.at(q, p)[0][0]);
+            const double there = static_cast<double>(light.at(p, q)[0][0]),
+                         back = static_cast<double>(light.at(q, p)[0][0]);
             difference += std::abs(there - back);
             total += there + back;
         }
@@ -113,11 +132,15 @@ TEST(LocalTransfer, ClosedRoomsExchangeNothing) {
     b.place(room({-4, 0, -3}, {0, 3, 3}), "", grey);
     b.place(room({0.2f, 0, -3}, {4, 3, 3}), "", grey);
     const auto world = open_world(b);
-    const bake::LocalLight light = local_at(*world, {{-1, 0, 1}, {-3, 1, 2}, {0.3f, 0, 1}, {3, -1, 2}}, 1024, 4);
+    const bake::LocalLight light =
+        local_at(*world, {{-1, 0, 1}, {-3, 1, 2}, {0.3f, 0, 1}, {3, -1, 2}}, 1024, 4);
     for (std::size_t p = 0; p < 4; ++p) {
         for (std::size_t q = 0; q < 4; ++q) {
-            if (p / 2 == q / 2) { EXPECT_GT(light.at(p, q)[0][0], 0) << p << " " << q; }
-            else { EXPECT_EQ(light.at(p, q), bake::LocalCoefficients{}) << p << " " << q; }
+            if (p / 2 == q / 2) {
+                EXPECT_GT(light.at(p, q)[0][0], 0) << p << " " << q;
+            } else {
+                EXPECT_EQ(light.at(p, q), bake::LocalCoefficients{}) << p << " " << q;
+            }
         }
     }
 }
@@ -139,7 +162,9 @@ TEST(LocalTransfer, SectorHoldsItsOwnProbesThenNeighbours) {
     for (std::size_t s = 0; s < 128; ++s) {
         const bool own = local.sources[s].di == 0 && local.sources[s].dj == 0;
         EXPECT_EQ(own, s < 64) << s;
-        if (own) { EXPECT_EQ(local.sources[s].probe, s); }
+        if (own) {
+            EXPECT_EQ(local.sources[s].probe, s);
+        }
     }
     // The first neighbours stand 8 m from the border's probes.
     EXPECT_EQ(std::abs(local.sources[64].di) + std::abs(local.sources[64].dj), 1);
@@ -150,7 +175,8 @@ TEST(LocalTransfer, SectorHoldsItsOwnProbesThenNeighbours) {
     EXPECT_EQ(read, baked->sector);
     // Alone or among others, in any order, the neighbours' bytes are the same.
     const auto again = open_world(b);
-    for (const map::SectorCoordinate other : {map::SectorCoordinate{-1, 0}, {1, 1}}) ASSERT_TRUE(bake::bake_sector(*again, other, settings));
+    for (const map::SectorCoordinate other : {map::SectorCoordinate{-1, 0}, {1, 1}})
+        ASSERT_TRUE(bake::bake_sector(*again, other, settings));
     EXPECT_EQ(bake::bake_sector(*again, {0, 0}, settings)->sector, baked->sector);
 }
 

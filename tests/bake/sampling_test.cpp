@@ -1,7 +1,7 @@
 #include "bakerd/bake/sampling.h"
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,18 +17,21 @@ TEST(SampleTable, EachDimensionIsStratified) {
     const SampleTable table(count, max_sample_dimensions);
     for (std::uint32_t d = 0; d < max_sample_dimensions; ++d) {
         std::set<std::uint32_t> strata;
-        for (std::uint32_t n = 0; n < count; ++n) strata.insert(table.point(n)[d] >> 22);
+        for (std::uint32_t n = 0; n < count; ++n)
+            strata.insert(table.point(n)[d] >> 22);
         EXPECT_EQ(strata.size(), count) << "dimension " << d;
     }
 }
 
-// The first two dimensions of Sobol's sequence are a (0, 2)-sequence: all elementary rectangles hold one point.
+// The first two dimensions of Sobol's sequence are a (0, 2)-sequence: all elementary rectangles hold one
+// point.
 TEST(SampleTable, FirstPairFillsEveryElementaryRectangle) {
     const SampleTable table(count, 2);
     for (std::uint32_t across = 0; across <= 10; ++across) {
         std::set<std::uint64_t> cells;
         for (std::uint32_t n = 0; n < count; ++n) {
-            const std::uint64_t x = across == 0 ? 0 : table.point(n)[0] >> (32 - across), y = across == 10 ? 0 : table.point(n)[1] >> (22 + across);
+            const std::uint64_t x = across == 0 ? 0 : table.point(n)[0] >> (32 - across),
+                                y = across == 10 ? 0 : table.point(n)[1] >> (22 + across);
             cells.insert(x << 32 | y);
         }
         EXPECT_EQ(cells.size(), count) << across;
@@ -39,9 +42,12 @@ TEST(SampleTable, DigitalShiftKeepsStrataAndDependsOnThePosition) {
     const SampleTable table(count, 4);
     const auto shift = digital_shift({1, 2, 3});
     std::set<std::uint32_t> strata;
-    for (std::uint32_t n = 0; n < count; ++n) strata.insert((table.point(n)[3] ^ shift[3]) >> 22);
+    for (std::uint32_t n = 0; n < count; ++n)
+        strata.insert((table.point(n)[3] ^ shift[3]) >> 22);
     EXPECT_EQ(strata.size(), count);
-    for (const glm::ivec3& other : {glm::ivec3(2, 2, 3), glm::ivec3(1, 3, 3), glm::ivec3(1, 2, 4), glm::ivec3(-1, 2, 3), glm::ivec3(2, 1, 3)}) EXPECT_NE(digital_shift(other), shift);
+    for (const glm::ivec3& other : {glm::ivec3(2, 2, 3), glm::ivec3(1, 3, 3), glm::ivec3(1, 2, 4),
+                                    glm::ivec3(-1, 2, 3), glm::ivec3(2, 1, 3)})
+        EXPECT_NE(digital_shift(other), shift);
     EXPECT_EQ(digital_shift({1, 2, 3}), shift);
 }
 
@@ -63,10 +69,13 @@ TEST(Directions, SphereIsUnitAndUniform) {
 
 TEST(Directions, HemisphereFollowsTheCosineAroundAnyNormal) {
     const SampleTable table(16384, 2);
-    for (const glm::vec3& n : {glm::vec3(0, 0, 1), glm::vec3(0, 0, -1), glm::normalize(glm::vec3(1, -2, 0.5f)), glm::normalize(glm::vec3(-1e-4f, 0, -1))}) {
+    for (const glm::vec3& n :
+         {glm::vec3(0, 0, 1), glm::vec3(0, 0, -1), glm::normalize(glm::vec3(1, -2, 0.5f)),
+          glm::normalize(glm::vec3(-1e-4f, 0, -1))}) {
         double cosine = 0;
         for (std::uint32_t s = 0; s < table.count(); ++s) {
-            const glm::vec3 w = cosine_hemisphere({unit_float(table.point(s)[0]), unit_float(table.point(s)[1])}, n);
+            const glm::vec3 w =
+                cosine_hemisphere({unit_float(table.point(s)[0]), unit_float(table.point(s)[1])}, n);
             ASSERT_NEAR(glm::length(w), 1, 2e-6);
             ASSERT_GE(glm::dot(w, n), -1e-6f);
             cosine += static_cast<double>(glm::dot(w, n));
@@ -84,7 +93,8 @@ TEST(Directions, AzimuthAgreesWithTheLibraryToSevenDigits) {
     }
 }
 
-// Parts of 256, 512, ... are whole, and in each a run of 16 lies in one square of the first two dimensions, shifted or not.
+// Parts of 256, 512, ... are whole, and in each a run of 16 lies in one square of the first two dimensions,
+// shifted or not.
 TEST(SampleTable, OrderPutsNeighboursSideBySide) {
     constexpr std::uint32_t total = 2048;
     const SampleTable samples(total, 4);
@@ -100,12 +110,14 @@ TEST(SampleTable, OrderPutsNeighboursSideBySide) {
         }
         const std::uint32_t points = to - from;
         std::uint32_t side_bits = 0;  // squares of which each holds 16 points
-        while ((16u << 2 * (side_bits + 1)) <= points) ++side_bits;
+        while ((16u << 2 * (side_bits + 1)) <= points)
+            ++side_bits;
         for (std::uint32_t first = from; first < to; first += points >> (2 * side_bits)) {
             for (const std::uint32_t shift : {0u, 0xA5C3F096u}) {
                 for (std::size_t d = 0; d < 2 && side_bits > 0; ++d) {
                     const std::uint32_t square = (samples.point(order[first])[d] ^ shift) >> (32 - side_bits);
-                    for (std::uint32_t k = 1; k < points >> (2 * side_bits); ++k) EXPECT_EQ((samples.point(order[first + k])[d] ^ shift) >> (32 - side_bits), square);
+                    for (std::uint32_t k = 1; k < points >> (2 * side_bits); ++k)
+                        EXPECT_EQ((samples.point(order[first + k])[d] ^ shift) >> (32 - side_bits), square);
                 }
             }
         }

@@ -18,8 +18,12 @@ TEST(Settings, PresetsAreThoseOfTheDesign) {
 TEST(Settings, ValuesOutOfRangeAreRefusedAndChangeNothing) {
     Settings settings;
     const Settings before = settings;
-    for (const auto& [key, value] : {std::pair("rays", "15"), std::pair("rays", "65537"), std::pair("rays", "-1"), std::pair("rays", "1e3"), std::pair("bounces", "9"), std::pair("reach", "0.5"), std::pair("reach", "nan"),
-                                     std::pair("reach", "inf"), std::pair("min_distance", "16.5"), std::pair("min_distance", ""), std::pair("lprt", "2"), std::pair("lprt_bounces", "5"), std::pair("error", "-0.1"), std::pair("reach", "12m")}) {
+    for (const auto& [key, value] :
+         {std::pair("rays", "15"), std::pair("rays", "65537"), std::pair("rays", "-1"),
+          std::pair("rays", "1e3"), std::pair("bounces", "9"), std::pair("reach", "0.5"),
+          std::pair("reach", "nan"), std::pair("reach", "inf"), std::pair("min_distance", "16.5"),
+          std::pair("min_distance", ""), std::pair("lprt", "2"), std::pair("lprt_bounces", "5"),
+          std::pair("error", "-0.1"), std::pair("reach", "12m")}) {
         const auto result = set(settings, key, value);
         ASSERT_FALSE(result) << key << "=" << value;
         EXPECT_NE(result.error().find(key), std::string::npos);
@@ -29,7 +33,9 @@ TEST(Settings, ValuesOutOfRangeAreRefusedAndChangeNothing) {
 
 TEST(Settings, KeyChangesWithEachSetting) {
     const Settings base;
-    for (const auto& [key, value] : {std::pair("rays", "1024"), std::pair("bounces", "2"), std::pair("reach", "100.5"), std::pair("min_distance", "7"), std::pair("error", "0.01"), std::pair("lprt", "1")}) {
+    for (const auto& [key, value] :
+         {std::pair("rays", "1024"), std::pair("bounces", "2"), std::pair("reach", "100.5"),
+          std::pair("min_distance", "7"), std::pair("error", "0.01"), std::pair("lprt", "1")}) {
         Settings other;
         ASSERT_TRUE(set(other, key, value));
         EXPECT_NE(settings_key(other), settings_key(base)) << key;

@@ -21,19 +21,25 @@ struct LampsOverAPlane {
     // Lamps of 683 cd (1 W/sr in the green that an eye sees best) so high above the plane.
     explicit LampsOverAPlane(const std::vector<glm::dvec3>& lamps) {
         GltfBuilder b;
-        b.add_node({.mesh = b.add_mesh(ground(100), b.add_material({.colour = {albedo, albedo, albedo, 1}}))});
-        for (const glm::dvec3& lamp : lamps) b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 683}}), .translation = glm::dvec3(lamp.x, lamp.z, -lamp.y)});
+        b.add_node(
+            {.mesh = b.add_mesh(ground(100), b.add_material({.colour = {albedo, albedo, albedo, 1}}))});
+        for (const glm::dvec3& lamp : lamps)
+            b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 683}}),
+                        .translation = glm::dvec3(lamp.x, lamp.z, -lamp.y)});
         world = open_world(b);
         scene = world->scene_for({0, 0}, 200);
         settings.bounces = 1;
         settings.reach_m = 80;
     }
 
-    [[nodiscard]] float gain() const { return bake::static_gain(world->lights(), world->most_scattered(), *scene, probes, settings); }
+    [[nodiscard]] float gain() const {
+        return bake::static_gain(world->lights(), world->most_scattered(), *scene, probes, settings);
+    }
     // What the plane radiates so near to one of the lamps, as a share of the range.
     [[nodiscard]] float gain_at(float distance_m) const {
         const glm::vec3& intensity = world->lights().points()[0].intensity;
-        return albedo * std::numbers::inv_pi_v<float> * std::max({intensity.x, intensity.y, intensity.z}) / (distance_m * distance_m) / bake::static_irradiance_range;
+        return albedo * std::numbers::inv_pi_v<float> * std::max({intensity.x, intensity.y, intensity.z}) /
+               (distance_m * distance_m) / bake::static_irradiance_range;
     }
 };
 
@@ -72,7 +78,10 @@ TEST(StaticGain, GrowsWithTheSurfaces) {
 
 TEST(StaticGain, OfBoxesIsByTheirDistance) {
     const LampsOverAPlane lamp({{5, 5, 4}});
-    const auto of_box = [&](const map::Bounds& box) { return bake::static_gain(lamp.world->lights(), lamp.world->most_scattered(), std::vector{box}, lamp.settings); };
+    const auto of_box = [&](const map::Bounds& box) {
+        return bake::static_gain(lamp.world->lights(), lamp.world->most_scattered(), std::vector{box},
+                                 lamp.settings);
+    };
     EXPECT_FLOAT_EQ(of_box({{7, 4, 3}, {8, 6, 5}}), lamp.gain_at(2));
     EXPECT_EQ(of_box({{500, 500, 0}, {501, 501, 1}}), 0);
     // Around the lamp: more than any tolerance, and a number.

@@ -31,7 +31,8 @@ GltfBuilder clutter(const Clutter& size) {
         b.add_node({.mesh = crown, .translation = at_random(0), .scale = scale, .role = "vegetation"});
     }
     // Twice the same block: every hit on it is a tie.
-    for (int n = 0; n < 2; ++n) b.add_node({.mesh = block, .translation = glm::dvec3(32, 0, -32)});
+    for (int n = 0; n < 2; ++n)
+        b.add_node({.mesh = block, .translation = glm::dvec3(32, 0, -32)});
 
     const int glow = b.add_material({});
     auto& material = b.json["materials"][static_cast<std::size_t>(glow)];

@@ -1,6 +1,7 @@
 // Speed of the bake beside Embree alone on the same rays, in one run:
 //   bake_bench MAP.glb [--benchmark_...]
-// Integration is single-threaded; `over_embree` is the time of the bake over that of Embree, measured in pairs.
+// Integration is single-threaded; `over_embree` is the time of the bake over that of Embree, measured in
+// pairs.
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/sector_bake.h"
 #include "tests/bench/bench_world.h"
@@ -37,8 +38,11 @@ std::uint64_t integrate_all(bake::RayLog* log = nullptr, bake::FootprintRecorder
     const trace::FloatMode float_mode;
     std::uint64_t rays = 0;
     for (const glm::ivec3& probe : setup->probes) {
-        if (footprint != nullptr) footprint->begin(bake::quarter_of(setup->sector, probe));
-        const bake::ProbeLight light = bake::integrate_probe(*setup->scene, setup->world->lights(), probe, *setup->samples, {setup->settings.bounces, setup->settings.reach_m, 0}, {footprint, log});
+        if (footprint != nullptr)
+            footprint->begin(bake::quarter_of(setup->sector, probe));
+        const bake::ProbeLight light =
+            bake::integrate_probe(*setup->scene, setup->world->lights(), probe, *setup->samples,
+                                  {setup->settings.bounces, setup->settings.reach_m, 0}, {footprint, log});
         rays += light.rays + light.shadow_rays;
     }
     return rays;
@@ -46,7 +50,8 @@ std::uint64_t integrate_all(bake::RayLog* log = nullptr, bake::FootprintRecorder
 
 bool prepare(const std::string& path) {
     auto world = open_world(path);
-    if (!world) return false;
+    if (!world)
+        return false;
     setup.emplace();
     setup->world = std::move(world);
     setup->sectors = setup->world->sectors_with_ground();
@@ -59,7 +64,9 @@ bool prepare(const std::string& path) {
         setup->probes.emplace_back(units[0], units[1], units[2]);
     }
     setup->scene = setup->world->scene_for(middle, setup->settings.reach_m);
-    setup->samples = std::make_unique<bake::SampleTable>(setup->settings.rays, bake::sample_dimensions(setup->settings.bounces, !setup->world->lights().empty()));
+    setup->samples = std::make_unique<bake::SampleTable>(
+        setup->settings.rays,
+        bake::sample_dimensions(setup->settings.bounces, !setup->world->lights().empty()));
     static_cast<void>(integrate_all(&setup->rays));
     setup->embree = std::make_unique<RawEmbree>(setup->world->map());
     return true;
@@ -67,16 +74,22 @@ bool prepare(const std::string& path) {
 
 void integrate_probes(benchmark::State& state) {
     std::uint64_t rays = 0;
-    for (auto _ : state) rays += integrate_all();
+    for (auto _ : state)
+        rays += integrate_all();
     state.counters["rays/s"] = benchmark::Counter(static_cast<double>(rays), benchmark::Counter::kIsRate);
-    state.counters["probes/s"] = benchmark::Counter(static_cast<double>(setup->probes.size()) * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+    state.counters["probes/s"] = benchmark::Counter(
+        static_cast<double>(setup->probes.size()) * static_cast<double>(state.iterations()),
+        benchmark::Counter::kIsRate);
 }
 BENCHMARK(integrate_probes)->Unit(benchmark::kMillisecond);
 
 void embree_alone(benchmark::State& state) {
     const trace::FloatMode float_mode;
-    for (auto _ : state) benchmark::DoNotOptimize(setup->embree->trace(setup->rays.paths, setup->rays.shadows));
-    state.counters["rays/s"] = benchmark::Counter(static_cast<double>(setup->ray_count()) * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+    for (auto _ : state)
+        benchmark::DoNotOptimize(setup->embree->trace(setup->rays.paths, setup->rays.shadows));
+    state.counters["rays/s"] =
+        benchmark::Counter(static_cast<double>(setup->ray_count()) * static_cast<double>(state.iterations()),
+                           benchmark::Counter::kIsRate);
 }
 BENCHMARK(embree_alone)->Unit(benchmark::kMillisecond);
 
@@ -91,7 +104,8 @@ void bake_over_embree(benchmark::State& state) {
         benchmark::DoNotOptimize(setup->embree->trace(setup->rays.paths, setup->rays.shadows));
         ratios.push_back((between - start) / (seconds() - between));
     }
-    std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
+    std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2),
+                     ratios.end());
     state.counters["over_embree"] = ratios[ratios.size() / 2];
 }
 BENCHMARK(bake_over_embree)->Unit(benchmark::kMillisecond)->Iterations(15);
@@ -100,7 +114,8 @@ BENCHMARK(bake_over_embree)->Unit(benchmark::kMillisecond)->Iterations(15);
 void footprint_over_none(benchmark::State& state) {
     const trace::FloatMode float_mode;
     std::vector<double> ratios;
-    const bake::FootprintGrid grid = bake::footprint_grid(setup->sector, setup->settings.reach_m, setup->scene->bounds().low.z, setup->scene->bounds().high.z);
+    const bake::FootprintGrid grid = bake::footprint_grid(
+        setup->sector, setup->settings.reach_m, setup->scene->bounds().low.z, setup->scene->bounds().high.z);
     for (auto _ : state) {
         const double start = seconds();
         benchmark::DoNotOptimize(integrate_all());
@@ -111,7 +126,8 @@ void footprint_over_none(benchmark::State& state) {
         recorders.store(footprint);
         ratios.push_back((seconds() - between) / (between - start));
     }
-    std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
+    std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2),
+                     ratios.end());
     state.counters["over_none"] = ratios[ratios.size() / 2];
 }
 BENCHMARK(footprint_over_none)->Unit(benchmark::kMillisecond)->Iterations(15);
@@ -139,7 +155,8 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: bake_bench MAP.glb [--benchmark_...]\n");
         return 1;
     }
-    if (!drtv::bench::prepare(argv[1])) return 1;
+    if (!drtv::bench::prepare(argv[1]))
+        return 1;
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }

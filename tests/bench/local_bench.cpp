@@ -16,7 +16,8 @@ namespace drtv::bench {
 namespace {
 
 // Of the numbers (receiver, source) those that matter.
-std::vector<std::pair<std::size_t, std::size_t>> strong_pairs(const bake::LocalLight& light, std::size_t receivers) {
+std::vector<std::pair<std::size_t, std::size_t>> strong_pairs(const bake::LocalLight& light,
+                                                              std::size_t receivers) {
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
     for (std::size_t p = 0; p < receivers; ++p) {
         std::vector<std::pair<double, std::size_t>> row;
@@ -49,7 +50,8 @@ double difference(const bake::LocalCoefficients& a, const bake::LocalCoefficient
 int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
     const trace::FloatMode float_mode;
     const auto world = open_world(path);
-    if (!world) return 1;
+    if (!world)
+        return 1;
     const map::SectorCoordinate at = chosen.value_or(middle_sector(*world));
     bake::Settings settings = bake::preset("pc").value();
     const auto scene = world->scene_for(at, bake::scene_distance_m(settings));
@@ -57,7 +59,8 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
     std::vector<const bake::PlacedSector*> neighbours;
     for (int k = 0; k < 9; ++k) {
         const map::SectorCoordinate coordinate{at.i + k % 3 - 1, at.j + k / 3 - 1};
-        if (k == 4 || !world->has_ground(coordinate)) continue;
+        if (k == 4 || !world->has_ground(coordinate))
+            continue;
         around.push_back(world->placed(coordinate, settings, *scene));
         neighbours.push_back(&**around.back());
     }
@@ -76,10 +79,14 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
         rest_seconds.push_back(seconds() - start);
     }
     std::sort(rest_seconds.begin(), rest_seconds.end());
-    std::printf("sector (%d, %d): %zu probes, %zu sources; the rest of the bake: %.0f ms\n", at.i, at.j, receivers, sources.positions.size(), rest_seconds[1] * 1e3);
+    std::printf("sector (%d, %d): %zu probes, %zu sources; the rest of the bake: %.0f ms\n", at.i, at.j,
+                receivers, sources.positions.size(), rest_seconds[1] * 1e3);
 
     const auto local_with = [&](std::uint32_t rays) {
-        return bake::integrate_local(*scene, sources.positions, receivers, *world->samples(rays, bake::local_sample_dimensions(settings.local_bounces)), {settings.local_bounces, settings.reach_m});
+        return bake::integrate_local(
+            *scene, sources.positions, receivers,
+            *world->samples(rays, bake::local_sample_dimensions(settings.local_bounces)),
+            {settings.local_bounces, settings.reach_m});
     };
     const bake::LocalLight truth = local_with(8192);
     const auto pairs = strong_pairs(truth, receivers);
@@ -92,29 +99,38 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
             best = std::min(best, seconds() - start);
         }
         std::vector<double> errors;
-        for (const auto& [p, q] : pairs) errors.push_back(difference(light.at(p, q), truth.at(p, q)));
+        for (const auto& [p, q] : pairs)
+            errors.push_back(difference(light.at(p, q), truth.at(p, q)));
         std::sort(errors.begin(), errors.end());
-        std::printf("rays %4u: %6.0f ms (%.2f of the rest), %7.0f k rays, error of %zu pairs: median %.2f %%, p95 %.2f %%\n", rays, best * 1e3, best / rest_seconds[1], static_cast<double>(light.rays) / 1e3,
-                    errors.size(), 100 * errors[errors.size() / 2], 100 * errors[errors.size() * 95 / 100]);
+        std::printf(
+            "rays %4u: %6.0f ms (%.2f of the rest), %7.0f k rays, error of %zu pairs: median %.2f %%, p95 "
+            "%.2f %%\n",
+            rays, best * 1e3, best / rest_seconds[1], static_cast<double>(light.rays) / 1e3, errors.size(),
+            100 * errors[errors.size() / 2], 100 * errors[errors.size() * 95 / 100]);
         if (rays == settings.local_rays) {
             const LocalTransfer stored = bake::encode_local(sources, light, receivers, settings.reach_m);
             std::vector<double> rounding;
             for (std::size_t p = 0; p < receivers; ++p) {
                 std::uint32_t n = stored.receivers[p].first_pair;
                 for (std::size_t q = 0; q < sources.positions.size(); ++q) {
-                    if (!has_pair(stored.receivers[p], q)) continue;
-                    const float scale = scale_of_exponent(stored.receivers[p].exponent + stored.sources[q].exponent);
+                    if (!has_pair(stored.receivers[p], q))
+                        continue;
+                    const float scale =
+                        scale_of_exponent(stored.receivers[p].exponent + stored.sources[q].exponent);
                     bake::LocalCoefficients decoded{};
                     for (std::size_t c = 0; c < channel_count; ++c) {
-                        for (std::size_t i = 0; i < sh_count; ++i) decoded[c][i] = decode_fixed(stored.pairs[n][c][i], scale);
+                        for (std::size_t i = 0; i < sh_count; ++i)
+                            decoded[c][i] = decode_fixed(stored.pairs[n][c][i], scale);
                     }
                     ++n;
-                    if (light.at(p, q)[1][0] > 0) rounding.push_back(difference(decoded, light.at(p, q)));
+                    if (light.at(p, q)[1][0] > 0)
+                        rounding.push_back(difference(decoded, light.at(p, q)));
                 }
             }
             std::sort(rounding.begin(), rounding.end());
-            std::printf("  stored: %zu of %zu pairs; rounding of those stored: median %.3f %%, p95 %.3f %%\n", stored.pairs.size(), receivers * sources.positions.size(), 100 * rounding[rounding.size() / 2],
-                        100 * rounding[rounding.size() * 95 / 100]);
+            std::printf("  stored: %zu of %zu pairs; rounding of those stored: median %.3f %%, p95 %.3f %%\n",
+                        stored.pairs.size(), receivers * sources.positions.size(),
+                        100 * rounding[rounding.size() / 2], 100 * rounding[rounding.size() * 95 / 100]);
         }
     }
     return 0;
@@ -129,6 +145,7 @@ int main(int argc, char** argv) {
         return 1;
     }
     std::optional<drtv::map::SectorCoordinate> sector;
-    if (argc == 4) sector = {std::atoi(argv[2]), std::atoi(argv[3])};
+    if (argc == 4)
+        sector = {std::atoi(argv[2]), std::atoi(argv[3])};
     return drtv::bench::run(argv[1], sector);
 }

@@ -12,10 +12,12 @@ RawEmbree::RawEmbree(const map::Map& map) : device_(rtcNewDevice("isa=avx2")), s
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
         for (const map::Primitive& primitive : mesh.primitives) {
             RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-            std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), primitive.positions.size()), primitive.positions.data(),
-                        primitive.positions.size() * sizeof(glm::vec3));
-            std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), primitive.triangles.size()), primitive.triangles.data(),
-                        primitive.triangles.size() * sizeof(glm::uvec3));
+            std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                sizeof(glm::vec3), primitive.positions.size()),
+                        primitive.positions.data(), primitive.positions.size() * sizeof(glm::vec3));
+            std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                sizeof(glm::uvec3), primitive.triangles.size()),
+                        primitive.triangles.data(), primitive.triangles.size() * sizeof(glm::uvec3));
             rtcCommitGeometry(geometry);
             rtcAttachGeometry(scene, geometry);
             rtcReleaseGeometry(geometry);
@@ -27,7 +29,8 @@ RawEmbree::RawEmbree(const map::Map& map) : device_(rtcNewDevice("isa=avx2")), s
     for (const map::Object& object : map.objects) {
         RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
         rtcSetGeometryInstancedScene(instance, meshes_[object.mesh]);
-        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &object.world_from_object[0][0]);
+        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
+                                &object.world_from_object[0][0]);
         rtcCommitGeometry(instance);
         rtcAttachGeometry(scene_, instance);
         rtcReleaseGeometry(instance);
@@ -37,7 +40,8 @@ RawEmbree::RawEmbree(const map::Map& map) : device_(rtcNewDevice("isa=avx2")), s
 
 RawEmbree::~RawEmbree() {
     rtcReleaseScene(scene_);
-    for (RTCScene mesh : meshes_) rtcReleaseScene(mesh);
+    for (RTCScene mesh : meshes_)
+        rtcReleaseScene(mesh);
     rtcReleaseDevice(device_);
 }
 

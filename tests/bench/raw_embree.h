@@ -20,7 +20,8 @@ class RawEmbree {
 
     // Closest hits of all rays; gives how many hit.
     // Closest hits of the first, occlusion of the second, a ray at a time.
-    [[nodiscard]] std::size_t trace(std::span<const trace::Ray> closest, std::span<const trace::Ray> shadows) const;
+    [[nodiscard]] std::size_t trace(std::span<const trace::Ray> closest,
+                                    std::span<const trace::Ray> shadows) const;
 
   private:
     RTCDevice device_;

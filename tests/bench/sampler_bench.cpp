@@ -1,7 +1,8 @@
 // Error against time of the samplers that were tried, on the probes of one sector:
 //   sampler_bench MAP.glb
-// The error is that of E/pi relit by a sky of radiance 1, and of all coefficients of the transfer: root mean square over probes,
-// over their mean, against 65,536 joint paths. `time` is that which the sampler needs for the error of 2,048 joint paths.
+// The error is that of E/pi relit by a sky of radiance 1, and of all coefficients of the transfer: root mean
+// square over probes, over their mean, against 65,536 joint paths. `time` is that which the sampler needs for
+// the error of 2,048 joint paths.
 #include "bakerd/bake/integrate.h"
 #include "tests/bench/bench_world.h"
 
@@ -18,11 +19,14 @@ constexpr std::uint32_t bounces = 3, dimensions = 2 + 2 * bounces;
 bake::SampleTable plain(std::uint32_t count) {
     std::mt19937 random(1);
     std::vector<std::uint32_t> words(std::size_t{count} * dimensions);
-    for (std::uint32_t& word : words) word = static_cast<std::uint32_t>(random());
+    for (std::uint32_t& word : words)
+        word = static_cast<std::uint32_t>(random());
     return {std::move(words), dimensions};
 }
 
-bake::SampleTable joint(std::uint32_t count) { return {count, dimensions}; }
+bake::SampleTable joint(std::uint32_t count) {
+    return {count, dimensions};
+}
 
 // Each bounce has a Sobol pattern of two dimensions of its own, shuffled against the others.
 bake::SampleTable padded(std::uint32_t count) {
@@ -30,8 +34,10 @@ bake::SampleTable padded(std::uint32_t count) {
     std::vector<std::uint32_t> words(std::size_t{count} * dimensions), order(count);
     std::mt19937 random(2);
     for (std::uint32_t pair = 0; pair < dimensions / 2; ++pair) {
-        for (std::uint32_t n = 0; n < count; ++n) order[n] = n;
-        if (pair > 0) std::shuffle(order.begin(), order.end(), random);
+        for (std::uint32_t n = 0; n < count; ++n)
+            order[n] = n;
+        if (pair > 0)
+            std::shuffle(order.begin(), order.end(), random);
         const auto x = static_cast<std::uint32_t>(random()), y = static_cast<std::uint32_t>(random());
         for (std::uint32_t n = 0; n < count; ++n) {
             words[std::size_t{n} * dimensions + 2 * pair] = pattern.point(order[n])[0] ^ x;
@@ -45,9 +51,12 @@ struct Errors {
     double relit = 0, all = 0, seconds = 0;
 };
 
-std::vector<bake::ProbeLight> baked(const bake::World& world, const trace::Scene& scene, const std::vector<placement::Position>& probes, const bake::SampleTable& samples) {
+std::vector<bake::ProbeLight> baked(const bake::World& world, const trace::Scene& scene,
+                                    const std::vector<placement::Position>& probes,
+                                    const bake::SampleTable& samples) {
     std::vector<bake::ProbeLight> lights;
-    for (const auto& probe : probes) lights.push_back(bake::integrate_probe(scene, world.lights(), probe, samples, {bounces, 512, 0}));
+    for (const auto& probe : probes)
+        lights.push_back(bake::integrate_probe(scene, world.lights(), probe, samples, {bounces, 512, 0}));
     return lights;
 }
 
@@ -58,26 +67,33 @@ Errors errors_of(const std::vector<bake::ProbeLight>& lights, const std::vector<
     for (std::size_t p = 0; p < lights.size(); ++p) {
         for (std::size_t c = 0; c < channel_count; ++c) {
             for (std::size_t b = 0; b < basis_count; ++b) {
-                const auto relit = [&](const bake::ProbeLight& l) { return static_cast<double>(l.transfer[c][b][0]) / static_cast<double>(sh_y0) + static_cast<double>(l.sky_visibility[b]) * open[b]; };
+                const auto relit = [&](const bake::ProbeLight& l) {
+                    return static_cast<double>(l.transfer[c][b][0]) / static_cast<double>(sh_y0) +
+                           static_cast<double>(l.sky_visibility[b]) * open[b];
+                };
                 relit_square += std::pow(relit(lights[p]) - relit(truth[p]), 2);
                 relit_mean += relit(truth[p]);
                 ++relit_count;
                 for (std::size_t i = 0; i < sh_count; ++i) {
-                    all_square += std::pow(static_cast<double>(lights[p].transfer[c][b][i] - truth[p].transfer[c][b][i]), 2);
+                    all_square += std::pow(
+                        static_cast<double>(lights[p].transfer[c][b][i] - truth[p].transfer[c][b][i]), 2);
                     all_mean += std::abs(static_cast<double>(truth[p].transfer[c][b][i]));
                     ++all_count;
                 }
             }
         }
     }
-    const auto relative = [](double square, double mean, std::size_t count) { return std::sqrt(square / static_cast<double>(count)) / (mean / static_cast<double>(count)); };
+    const auto relative = [](double square, double mean, std::size_t count) {
+        return std::sqrt(square / static_cast<double>(count)) / (mean / static_cast<double>(count));
+    };
     return {relative(relit_square, relit_mean, relit_count), relative(all_square, all_mean, all_count), 0};
 }
 
 int run(const std::string& path) {
     const trace::FloatMode float_mode;
     const auto world = open_world(path);
-    if (!world) return 1;
+    if (!world)
+        return 1;
     const map::SectorCoordinate at = middle_sector(*world);
     const bake::Settings settings;
     const auto scene = world->scene_for(at, bake::scene_distance_m(settings));
@@ -91,7 +107,8 @@ int run(const std::string& path) {
         std::function<bake::SampleTable(std::uint32_t)> make;
         std::vector<Errors> by_count;
     };
-    std::vector<Sampler> samplers = {{"plain Monte Carlo", plain, {}}, {"padded Owen-Sobol", padded, {}}, {"joint Owen-Sobol", joint, {}}};
+    std::vector<Sampler> samplers = {
+        {"plain Monte Carlo", plain, {}}, {"padded Owen-Sobol", padded, {}}, {"joint Owen-Sobol", joint, {}}};
     const std::vector<std::uint32_t> counts = {256, 512, 1024, 2048, 4096, 8192};
     for (const std::uint32_t count : counts) {
         for (Sampler& sampler : samplers) {
@@ -101,8 +118,9 @@ int run(const std::string& path) {
             const double took = seconds() - start;
             sampler.by_count.push_back(errors_of(lights, truth));
             sampler.by_count.back().seconds = took;
-            std::printf("%5u paths, %-18s %6.2f ms a probe, relit %.2f %%, all %.2f %%\n", count, sampler.name, took * 1e3 / static_cast<double>(probes.size()), 100 * sampler.by_count.back().relit,
-                        100 * sampler.by_count.back().all);
+            std::printf("%5u paths, %-18s %6.2f ms a probe, relit %.2f %%, all %.2f %%\n", count,
+                        sampler.name, took * 1e3 / static_cast<double>(probes.size()),
+                        100 * sampler.by_count.back().relit, 100 * sampler.by_count.back().all);
         }
     }
     // Straight lines in the logarithms of error and time, by least squares.
@@ -117,7 +135,9 @@ int run(const std::string& path) {
             return std::exp((y - slope * x) / n + slope * std::log(error));
         };
         const double error = samplers[2].by_count[3].*member, joint_seconds = seconds_for(samplers[2], error);
-        for (const Sampler& sampler : samplers) std::printf("%-5s %.2f %%: %-18s %.1f times the time of joint\n", what, 100 * error, sampler.name, seconds_for(sampler, error) / joint_seconds);
+        for (const Sampler& sampler : samplers)
+            std::printf("%-5s %.2f %%: %-18s %.1f times the time of joint\n", what, 100 * error, sampler.name,
+                        seconds_for(sampler, error) / joint_seconds);
     }
     return 0;
 }

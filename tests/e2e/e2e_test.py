@@ -31,7 +31,11 @@ def world_translation(nodes, number):
         qx, qy, qz, qw = node.get("rotation", (0, 0, 0, 1))
         px, py, pz = (a * b for a, b in zip(point, node.get("scale", (1, 1, 1))))
         tx, ty, tz = 2 * (qy * pz - qz * py), 2 * (qz * px - qx * pz), 2 * (qx * py - qy * px)
-        turned = (px + qw * tx + qy * tz - qz * ty, py + qw * ty + qz * tx - qx * tz, pz + qw * tz + qx * ty - qy * tx)
+        turned = (
+            px + qw * tx + qy * tz - qz * ty,
+            py + qw * ty + qz * tx - qx * tz,
+            pz + qw * tz + qx * ty - qy * tx,
+        )
         point = tuple(a + b for a, b in zip(turned, node.get("translation", (0, 0, 0))))
         number = next((n for n, parent in enumerate(nodes) if number in parent.get("children", [])), None)
     return point
@@ -39,17 +43,35 @@ def world_translation(nodes, number):
 
 def write_map(path, **quads):
     """A glTF file with a node of that name for each quad: four corners in world axes, counter-clockwise seen from the front."""
-    data = b"".join(struct.pack("<3f", x, z, -y) for quad in quads.values() for x, y, z in quad) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    data = b"".join(
+        struct.pack("<3f", x, z, -y) for quad in quads.values() for x, y, z in quad
+    ) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
     vertices = {"buffer": 0, "byteOffset": 0, "byteLength": 48 * len(quads)}
     indices = {"buffer": 0, "byteOffset": 48 * len(quads), "byteLength": 12}
-    corners = [{"bufferView": 0, "byteOffset": 48 * n, "componentType": 5126, "type": "VEC3", "count": 4} for n in range(len(quads))]
+    corners = [
+        {"bufferView": 0, "byteOffset": 48 * n, "componentType": 5126, "type": "VEC3", "count": 4}
+        for n in range(len(quads))
+    ]
     material = {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]}}
-    document = {"asset": {"version": "2.0"}, "materials": [material],
-                "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
-                "bufferViews": [vertices, indices],
-                "accessors": [{"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 6}, *corners],
-                "meshes": [{"primitives": [{"attributes": {"POSITION": 1 + n}, "indices": 0, "material": 0}]} for n in range(len(quads))],
-                "nodes": [{"name": name, "mesh": n} for n, name in enumerate(quads)], "scene": 0, "scenes": [{"nodes": list(range(len(quads)))}]}
+    document = {
+        "asset": {"version": "2.0"},
+        "materials": [material],
+        "buffers": [
+            {
+                "byteLength": len(data),
+                "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode(),
+            }
+        ],
+        "bufferViews": [vertices, indices],
+        "accessors": [{"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 6}, *corners],
+        "meshes": [
+            {"primitives": [{"attributes": {"POSITION": 1 + n}, "indices": 0, "material": 0}]}
+            for n in range(len(quads))
+        ],
+        "nodes": [{"name": name, "mesh": n} for n, name in enumerate(quads)],
+        "scene": 0,
+        "scenes": [{"nodes": list(range(len(quads)))}],
+    }
     with open(path, "w", encoding="utf-8") as file:
         json.dump(document, file)
     return path
@@ -100,10 +122,14 @@ class Baking(FarmTest):
         island = self.island()
         files = self.pulled(daemon, island, *REGION, *FEW_RAYS)
         self.assertEqual(len(files), 35)
-        validated = self.farm.run("drtv", "validate", "--neighbours", "--warnings-as-errors", self.farm.path("pulled"), "--json")
+        validated = self.farm.run(
+            "drtv", "validate", "--neighbours", "--warnings-as-errors", self.farm.path("pulled"), "--json"
+        )
         self.assertEqual(validated.returncode, 0, validated.stdout)
         picture = self.farm.path("map.png")
-        self.assertEqual(self.farm.run("drtv", "preview", self.farm.path("pulled"), "--out", picture).returncode, 0)
+        self.assertEqual(
+            self.farm.run("drtv", "preview", self.farm.path("pulled"), "--out", picture).returncode, 0
+        )
         with open(picture, "rb") as file:
             self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
 
@@ -112,16 +138,32 @@ class Baking(FarmTest):
         island = self.island()
         with open(island, encoding="utf-8") as file:
             nodes = json.load(file)["nodes"]
-        probe = next(n for n, node in enumerate(nodes) if node.get("extras", {}).get("bake_role") == "probe" and "inland" in node["name"])
+        probe = next(
+            n
+            for n, node in enumerate(nodes)
+            if node.get("extras", {}).get("bake_role") == "probe" and "inland" in node["name"]
+        )
         x, y, z = world_translation(nodes, probe)
         self.pulled(daemon, island, "--region", f"{x},{-z},{x},{-z}", *FEW_RAYS)
         (name,) = os.listdir(self.farm.path("pulled"))
-        dump = json.loads(self.farm.run("drtv", "dump", os.path.join(self.farm.path("pulled"), name), "--json").stdout)
+        dump = json.loads(
+            self.farm.run("drtv", "dump", os.path.join(self.farm.path("pulled"), name), "--json").stdout
+        )
         manual = [p["position"] for p in dump["probes"] if p["kind"] == "manual"]
         half_unit_m = 0.5 / 1024
-        self.assertTrue(any(all(abs(a - b) <= half_unit_m for a, b in zip(position, (x, -z, y))) for position in manual), (manual, (x, -z, y)))
+        self.assertTrue(
+            any(all(abs(a - b) <= half_unit_m for a, b in zip(position, (x, -z, y))) for position in manual),
+            (manual, (x, -z, y)),
+        )
         # It is the probe of the hut's interior, a box around it.
-        rooms = [room for room in dump["interiors"] if all(abs(a - b) <= half_unit_m for a, b in zip(dump["probes"][room["probe"]]["position"], (x, -z, y)))]
+        rooms = [
+            room
+            for room in dump["interiors"]
+            if all(
+                abs(a - b) <= half_unit_m
+                for a, b in zip(dump["probes"][room["probe"]]["position"], (x, -z, y))
+            )
+        ]
         self.assertEqual([(len(room["vertices"]), len(room["triangles"])) for room in rooms], [(8, 12)])
         for axis, value in enumerate((x, -z, y)):
             self.assertLess(min(vertex[axis] for vertex in rooms[0]["vertices"]), value)
@@ -133,7 +175,9 @@ class Baking(FarmTest):
         first = self.pulled(daemon, island, *REGION, *FEW_RAYS)
         again = self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS)
         job = json.loads(again.stdout)
-        self.assertEqual((job["state"], job["sectors_cached"], job["sectors_total"]), ("succeeded", len(first), len(first)))
+        self.assertEqual(
+            (job["state"], job["sectors_cached"], job["sectors_total"]), ("succeeded", len(first), len(first))
+        )
 
     def test_renamed_and_reordered_map_is_the_same_map(self):
         daemon = self.farm.daemon()
@@ -141,7 +185,11 @@ class Baking(FarmTest):
         self.pulled(daemon, island, *REGION, *FEW_RAYS)
         with open(island, encoding="utf-8") as file:
             document = json.load(file)
-        probes = {volume["extras"]["bake_probe"] for volume in document["nodes"] if "bake_probe" in volume.get("extras", {})}
+        probes = {
+            volume["extras"]["bake_probe"]
+            for volume in document["nodes"]
+            if "bake_probe" in volume.get("extras", {})
+        }
         for number, node in enumerate(document["nodes"]):
             if node.get("name") not in probes:
                 node["name"] = f"renamed {number}"
@@ -151,17 +199,28 @@ class Baking(FarmTest):
         job = json.loads(self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS).stdout)
         self.assertEqual(job["sectors_cached"], job["sectors_total"])
 
-
     def dumps(self, daemon, *arguments, name="pulled"):
         """Of a bake's sectors, with any probes in them."""
         files = self.pulled(daemon, *arguments, name=name)
-        dumps = [json.loads(self.farm.run("drtv", "dump", os.path.join(self.farm.path(name), file), "--json").stdout) for file in files]
+        dumps = [
+            json.loads(
+                self.farm.run("drtv", "dump", os.path.join(self.farm.path(name), file), "--json").stdout
+            )
+            for file in files
+        ]
         return [dump for dump in dumps if dump["probes"]]
 
     def test_wall_seen_from_behind_is_told_by_its_name(self):
         daemon = self.farm.daemon()
         warning = r"^bake: warning: sector \(0, 0\): \d+ % of its rays meet surfaces from behind, most of them those of 'garden wall'"
-        turned = write_map(self.farm.path("turned.gltf"), **{"lawn": LAWN, "garden wall": WALL[::-1], "hatch": [(30, 1, 0), (30, 5, 0), (30, 5, 3), (30, 1, 3)]})
+        turned = write_map(
+            self.farm.path("turned.gltf"),
+            **{
+                "lawn": LAWN,
+                "garden wall": WALL[::-1],
+                "hatch": [(30, 1, 0), (30, 5, 0), (30, 5, 3), (30, 1, 3)],
+            },
+        )
         for arguments in (["submit", turned, *FEW_RAYS, "--wait"], ["watch", "1"]):
             done = self.farm.bake(daemon, *arguments)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -209,7 +268,10 @@ class Baking(FarmTest):
         self.assertLess(finer["convergence"]["error_median"], convergence["error_median"])
         # And without it all of the budget is used.
         (plain,) = self.dumps(daemon, lawn, "--set", "rays=1024", name="plain")
-        self.assertEqual([plain["convergence"][key] for key in ("error_asked", "paths_least", "paths_most")], [0, 1024, 1024])
+        self.assertEqual(
+            [plain["convergence"][key] for key in ("error_asked", "paths_least", "paths_most")],
+            [0, 1024, 1024],
+        )
 
 
 class Determinism(FarmTest):
@@ -220,7 +282,9 @@ class Determinism(FarmTest):
         two = self.farm.daemon("two", "--threads", "2")
         # The same sectors in another order: first some strips from the north, then all.
         for y in (100, -60, 20):
-            strip = self.farm.bake(two, "submit", island, "--region", f"-130,{y},250,{y}", *FEW_RAYS, "--wait")
+            strip = self.farm.bake(
+                two, "submit", island, "--region", f"-130,{y},250,{y}", *FEW_RAYS, "--wait"
+            )
             self.assertEqual(strip.returncode, 0, strip.stderr)
         parts = self.pulled(two, island, *REGION, *FEW_RAYS, name="parts")
         self.assertEqual(sorted(whole), sorted(parts))
@@ -273,7 +337,10 @@ class Crashes(FarmTest):
         island = self.island()
         daemon = self.farm.daemon()
         client = self.farm.start_bake(daemon, "submit", island, *REGION, *FEW_RAYS, "--wait")
-        wait_until(lambda: "job 1:" in daemon.log() and self.farm.job(daemon, 1)["sectors_done"] >= 1, what="the first sector")
+        wait_until(
+            lambda: "job 1:" in daemon.log() and self.farm.job(daemon, 1)["sectors_done"] >= 1,
+            what="the first sector",
+        )
         daemon.kill()
         time.sleep(0.3)
         daemon.start()
@@ -298,7 +365,10 @@ class Crashes(FarmTest):
         damage("sector_1_0.drtv")
         refused = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("second"))
         self.assert_sentence(refused, "damaged", "and 1 more", "submit the map again")
-        self.assertEqual(read_folder(self.farm.path("second")), {name: first[name] for name in ("sector_0_1.drtv", "sector_1_1.drtv")})
+        self.assertEqual(
+            read_folder(self.farm.path("second")),
+            {name: first[name] for name in ("sector_0_1.drtv", "sector_1_1.drtv")},
+        )
         self.assertEqual(self.pulled(daemon, island, *region, name="third"), first)
         # One that nobody has pulled since: the submit finds it, tells it and bakes it anew.
         damage("sector_0_1.drtv")
@@ -341,7 +411,9 @@ class Client(FarmTest):
         self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
 
     def test_absent_daemon_is_told(self):
-        self.assert_sentence(self.farm.run("bake", "--server", "127.0.0.1:1", "list"), "cannot reach bakerd at 127.0.0.1:1")
+        self.assert_sentence(
+            self.farm.run("bake", "--server", "127.0.0.1:1", "list"), "cannot reach bakerd at 127.0.0.1:1"
+        )
 
     def test_interrupted_client_leaves_the_job_running(self):
         daemon = self.farm.daemon()
@@ -371,7 +443,17 @@ class Client(FarmTest):
 
     def test_json_is_one_object_a_line(self):
         daemon = self.farm.daemon()
-        done = self.farm.bake(daemon, "--json", "submit", self.island(10), "--region", "0,0,1,1", *FEW_RAYS, "--pull", self.farm.path("out"))
+        done = self.farm.bake(
+            daemon,
+            "--json",
+            "submit",
+            self.island(10),
+            "--region",
+            "0,0,1,1",
+            *FEW_RAYS,
+            "--pull",
+            self.farm.path("out"),
+        )
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertEqual(lines[-2]["state"], "succeeded")
         self.assertEqual(lines[-1]["pulled"], 1)
@@ -384,7 +466,9 @@ class Client(FarmTest):
         os.remove(os.path.join(self.farm.path("pulled"), names[0]))
         with open(os.path.join(self.farm.path("pulled"), names[1]), "ab") as file:
             file.write(b"x")
-        again = json.loads(self.farm.bake(daemon, "--json", "pull", "1", "--out", self.farm.path("pulled")).stdout)
+        again = json.loads(
+            self.farm.bake(daemon, "--json", "pull", "1", "--out", self.farm.path("pulled")).stdout
+        )
         self.assertEqual((again["pulled"], again["unchanged"]), (2, len(names) - 2))
         self.assertEqual(read_folder(self.farm.path("pulled")), files)
 
@@ -394,7 +478,9 @@ class Client(FarmTest):
         island = self.island(10)
         disk = self.farm.path("disk")
         with tiny_disk(disk, 65536):
-            done = self.farm.bake(daemon, "submit", island, "--region", "0,0,400,1", *FEW_RAYS, "--pull", disk)
+            done = self.farm.bake(
+                daemon, "submit", island, "--region", "0,0,400,1", *FEW_RAYS, "--pull", disk
+            )
             self.assertEqual(done.returncode, 1, done.stdout)
             self.assertIn("No space left on device", done.stderr)
             for name in os.listdir(disk):
@@ -405,16 +491,28 @@ class Client(FarmTest):
 class Daemon(FarmTest):
     def test_taken_port_taken_folder_and_unwritable_folder_are_told(self):
         daemon = self.farm.daemon()
-        port = self.farm.run("bakerd", "serve", "--data", self.farm.path("other"), "--listen", daemon.address, timeout=20)
+        port = self.farm.run(
+            "bakerd", "serve", "--data", self.farm.path("other"), "--listen", daemon.address, timeout=20
+        )
         self.assert_sentence(port, f"cannot listen on {daemon.address}: the port is in use", status=1)
-        folder = self.farm.run("bakerd", "serve", "--data", self.farm.path("data"), "--listen", "127.0.0.1:0", timeout=20)
+        folder = self.farm.run(
+            "bakerd", "serve", "--data", self.farm.path("data"), "--listen", "127.0.0.1:0", timeout=20
+        )
         self.assert_sentence(folder, "in use by another bakerd", str(daemon.process.pid), status=1)
-        unwritable = self.farm.run("bakerd", "serve", "--data", "/proc/drtv", "--listen", "127.0.0.1:0", timeout=20)
+        unwritable = self.farm.run(
+            "bakerd", "serve", "--data", "/proc/drtv", "--listen", "127.0.0.1:0", timeout=20
+        )
         self.assert_sentence(unwritable, "/proc/drtv", status=1)
 
     def test_wrong_arguments_are_told(self):
-        for arguments, part in ((["serve"], "--data"), (["serve", "--data", "x", "--executor", "cloud"], "cloud"), (["serve", "--data", "x", "--threads", "-1"], "-1"), (["fly"], "'fly'"),
-                                (["serve", "--data", self.farm.path("x"), "--listen", "127.0.0.1:99999"], "127.0.0.1:99999"), (["serve", "--config", "/nowhere.ini"], "/nowhere.ini")):
+        for arguments, part in (
+            (["serve"], "--data"),
+            (["serve", "--data", "x", "--executor", "cloud"], "cloud"),
+            (["serve", "--data", "x", "--threads", "-1"], "-1"),
+            (["fly"], "'fly'"),
+            (["serve", "--data", self.farm.path("x"), "--listen", "127.0.0.1:99999"], "127.0.0.1:99999"),
+            (["serve", "--config", "/nowhere.ini"], "/nowhere.ini"),
+        ):
             with self.subTest(arguments=arguments):
                 self.assert_sentence(self.farm.run("bakerd", *arguments, timeout=20), "bakerd: ", part)
 
@@ -425,7 +523,12 @@ class Daemon(FarmTest):
         self.assertIn("bakes on 1 threads", self.farm.daemon("data", "--config", config).log())
         with open(config, "w", encoding="utf-8") as file:
             file.write("[serve]\ntreads = 1\n")
-        self.assert_sentence(self.farm.run("bakerd", "serve", "--data", self.farm.path("other"), "--config", config, timeout=20), "treads")
+        self.assert_sentence(
+            self.farm.run(
+                "bakerd", "serve", "--data", self.farm.path("other"), "--config", config, timeout=20
+            ),
+            "treads",
+        )
 
     def test_terminated_daemon_stops_cleanly_and_goes_on_later(self):
         daemon = self.farm.daemon()
@@ -456,7 +559,9 @@ class Daemon(FarmTest):
             file.write('{"asset": {"version": "2.0"}, "nodes": [{"mesh": 3}], "scenes": [{"nodes": [0]}]}')
         self.assert_sentence(self.farm.bake(daemon, "submit", broken), "broken.gltf", "node 0", "mesh")
         with open(broken, "w", encoding="utf-8") as file:
-            file.write('{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 3, "uri": "../secret.bin"}]}')
+            file.write(
+                '{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 3, "uri": "../secret.bin"}]}'
+            )
         self.assert_sentence(self.farm.bake(daemon, "submit", broken), "leaves the map's folder")
         self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
 
@@ -470,8 +575,29 @@ class Incremental(FarmTest):
 
     def test_edits_bake_what_they_changed_and_no_byte_less(self):
         """A few of what edits.py does by the hundred."""
-        done = subprocess.run([sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "edits.py"), "--bin", OPTIONS.bin, "--edits", "10", "--sequence", "5", "--rays", "64",
-                               "--plants", "700", "--seed", "4", "--region=-130,-190,250,120"], capture_output=True, text=True, timeout=600, check=False)
+        done = subprocess.run(
+            [
+                sys.executable,
+                os.path.join(os.path.dirname(os.path.abspath(__file__)), "edits.py"),
+                "--bin",
+                OPTIONS.bin,
+                "--edits",
+                "10",
+                "--sequence",
+                "5",
+                "--rays",
+                "64",
+                "--plants",
+                "700",
+                "--seed",
+                "4",
+                "--region=-130,-190,250,120",
+            ],
+            capture_output=True,
+            text=True,
+            timeout=600,
+            check=False,
+        )
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_a_plan_says_what_a_job_then_does(self):
@@ -482,17 +608,28 @@ class Incremental(FarmTest):
         self.assertEqual((fresh["hits"], fresh["rebakes"]), (0, 35))
         self.assertEqual(fresh["sectors"][0]["reason"], "it was not baked with these settings before")
         self.assertEqual(self.job_of(daemon, first, *REGION, *FEW_RAYS)["sectors_cached"], 0)
-        self.assertEqual(json.loads(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS).stdout)["hits"], 35)
+        self.assertEqual(
+            json.loads(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS).stdout)["hits"], 35
+        )
 
         number = edited.plants()[0]
         edited.nodes[number]["name"] = "the_palm"
-        self.assertEqual(json.loads(self.farm.bake(daemon, "--json", "plan", edited.write(self.farm.path("named")), *REGION, *FEW_RAYS).stdout)["hits"], 35)
+        self.assertEqual(
+            json.loads(
+                self.farm.bake(
+                    daemon, "--json", "plan", edited.write(self.farm.path("named")), *REGION, *FEW_RAYS
+                ).stdout
+            )["hits"],
+            35,
+        )
         self.job_of(daemon, self.farm.path("named"), *REGION, *FEW_RAYS)
         # One that every rock of this sector sees: the crater's middle.
         edited.nodes[number]["translation"] = [60.0, 60.0, 10.0]
         moved = edited.write(self.farm.path("moved"))
         picture = self.farm.path("plan.png")
-        plan = json.loads(self.farm.bake(daemon, "--json", "plan", moved, *REGION, *FEW_RAYS, "--png", picture).stdout)
+        plan = json.loads(
+            self.farm.bake(daemon, "--json", "plan", moved, *REGION, *FEW_RAYS, "--png", picture).stdout
+        )
         self.assertEqual(plan["hits"] + plan["near_hits"] + plan["rebakes"], 35)
         self.assertGreater(plan["rebakes"], 0)
         self.assertGreater(plan["seconds"], 0)
@@ -512,12 +649,20 @@ class Incremental(FarmTest):
         exact = self.job_of(daemon, moved, *REGION, *FEW_RAYS, "--exact", name="exact")
         self.assertEqual((exact["sectors_near"], exact["largest_bound"]), (0, 0))
         other = self.farm.daemon("other")
-        self.assertEqual(self.pulled(other, moved, *REGION, *FEW_RAYS, "--exact", name="from_nothing"), read_folder(self.farm.path("exact")))
+        self.assertEqual(
+            self.pulled(other, moved, *REGION, *FEW_RAYS, "--exact", name="from_nothing"),
+            read_folder(self.farm.path("exact")),
+        )
 
     def test_two_clients_at_once_bake_each_sector_once(self):
         daemon = self.farm.daemon()
         island = self.island()
-        clients = [self.farm.start_bake(daemon, "submit", island, *REGION, *FEW_RAYS, "--pull", self.farm.path(f"client_{n}")) for n in range(2)]
+        clients = [
+            self.farm.start_bake(
+                daemon, "submit", island, *REGION, *FEW_RAYS, "--pull", self.farm.path(f"client_{n}")
+            )
+            for n in range(2)
+        ]
         for client in clients:
             client.communicate(timeout=120)
             self.assertEqual(client.returncode, 0)
@@ -532,15 +677,33 @@ class Incremental(FarmTest):
         self.assertEqual((shown["limit"], shown["baked"], shown["hits"]), (300000, 35, 0))
         self.pulled(daemon, island, *REGION, "--preset", "draft", "--set", "rays=32", name="other")
         self.assertEqual(len(read_folder(self.farm.path("other"))), 35)
-        self.pulled(daemon, island, "--region", "0,0,1,1", "--preset", "draft", "--set", "rays=16", name="third")
+        self.pulled(
+            daemon, island, "--region", "0,0,1,1", "--preset", "draft", "--set", "rays=16", name="third"
+        )
         shown = json.loads(self.farm.bake(daemon, "--json", "cache").stdout)
         self.assertLessEqual(shown["size"], 300000)
         self.assertGreater(shown["results"], 0)
         self.assertIn("hit rate", self.farm.bake(daemon, "cache").stdout)
-        self.assertEqual(json.loads(self.farm.bake(daemon, "--json", "cache", "--clear").stdout)["results"], 0)
-        self.assert_sentence(self.farm.run("bakerd", "serve", "--data", self.farm.path("x"), "--cache-size", "much", timeout=20), "--cache-size", status=2)
-        self.assert_sentence(self.farm.bake(daemon, "plan", island, "--png", self.farm.path("no/folder.png"), *REGION, *FEW_RAYS), "no/folder.png", status=1)
-        self.assert_sentence(self.farm.bake(daemon, "plan", island, "--set", "tolerance=2"), "tolerance", "0.0625", status=1)
+        self.assertEqual(
+            json.loads(self.farm.bake(daemon, "--json", "cache", "--clear").stdout)["results"], 0
+        )
+        self.assert_sentence(
+            self.farm.run(
+                "bakerd", "serve", "--data", self.farm.path("x"), "--cache-size", "much", timeout=20
+            ),
+            "--cache-size",
+            status=2,
+        )
+        self.assert_sentence(
+            self.farm.bake(
+                daemon, "plan", island, "--png", self.farm.path("no/folder.png"), *REGION, *FEW_RAYS
+            ),
+            "no/folder.png",
+            status=1,
+        )
+        self.assert_sentence(
+            self.farm.bake(daemon, "plan", island, "--set", "tolerance=2"), "tolerance", "0.0625", status=1
+        )
 
 
 class RealMaps(FarmTest):
@@ -559,13 +722,35 @@ class RealMaps(FarmTest):
         return sorted(found)
 
     def assert_bakes(self, path, *settings):
-        done = self.farm.bake(self.daemon, "--json", "submit", path, "--preset", "draft", "--set", "rays=16", *settings, "--wait")
+        done = self.farm.bake(
+            self.daemon,
+            "--json",
+            "submit",
+            path,
+            "--preset",
+            "draft",
+            "--set",
+            "rays=16",
+            *settings,
+            "--wait",
+        )
         self.assertEqual(done.returncode, 0, path + ": " + done.stderr)
         return json.loads(done.stdout.splitlines()[-1])
 
     def test_models_and_scenes_bake(self):
-        for folder in ("A1_maunga_whau", "B_kenney_nature", "B_kenney_pirate", "B_kenney_watercraft", "B_polyhaven_dutch_ship", "B_polyhaven_fern",
-                       "B_quaternius_nature", "B_quaternius_props", "C_cornell", "C_zdm2", "M_desert"):
+        for folder in (
+            "A1_maunga_whau",
+            "B_kenney_nature",
+            "B_kenney_pirate",
+            "B_kenney_watercraft",
+            "B_polyhaven_dutch_ship",
+            "B_polyhaven_fern",
+            "B_quaternius_nature",
+            "B_quaternius_props",
+            "C_cornell",
+            "C_zdm2",
+            "M_desert",
+        ):
             for path in self.documents(folder):
                 with self.subTest(path=path):
                     self.assert_bakes(path)
@@ -578,20 +763,40 @@ class RealMaps(FarmTest):
         """Twenty square kilometres of it; the whole is a soak (CONTRIBUTING)."""
         for path in self.documents("A2_tutuila"):
             with self.subTest(path=path):
-                done = self.farm.bake(self.daemon, "--json", "submit", path, "--preset", "draft", "--set", "rays=16", "--region", "0,-500,500,-1", "--wait")
+                done = self.farm.bake(
+                    self.daemon,
+                    "--json",
+                    "submit",
+                    path,
+                    "--preset",
+                    "draft",
+                    "--set",
+                    "rays=16",
+                    "--region",
+                    "0,-500,500,-1",
+                    "--wait",
+                )
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertGreater(json.loads(done.stdout.splitlines()[-1])["probes"], 500)
 
     def test_importer_corpus(self):
         with open(os.path.join(OPTIONS.data, "E_importer/manifest.csv"), encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        unsupported = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness")
+        unsupported = (
+            "KHR_draco_mesh_compression",
+            "EXT_meshopt_compression",
+            "EXT_texture_webp",
+            "KHR_texture_basisu",
+            "KHR_materials_pbrSpecularGlossiness",
+        )
         for row in rows:
             kind, path = row["file"].split("/")[0], os.path.join(OPTIONS.data, "E_importer", row["file"])
             if kind not in ("valid", "invalid"):
                 continue
             with self.subTest(file=row["file"]):
-                done = self.farm.bake(self.daemon, "submit", path, "--preset", "draft", "--set", "rays=16", "--wait")
+                done = self.farm.bake(
+                    self.daemon, "submit", path, "--preset", "draft", "--set", "rays=16", "--wait"
+                )
                 if kind == "valid" and done.returncode == 0:
                     continue
                 self.assert_sentence(done, os.path.basename(path), status=1)

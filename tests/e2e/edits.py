@@ -25,7 +25,7 @@ from farm_fixture import Farm, make_island, read_folder
 TOLERANCE = 1 / 512
 # Shares of coefficients' ranges (bakerd/bake/assessment.h), and half a step of their fixed point on both sides.
 STATIC_RANGE = 0.25
-ROUNDING = 2.0 ** -13
+ROUNDING = 2.0**-13
 
 
 def probe_error(a, b):
@@ -33,7 +33,11 @@ def probe_error(a, b):
     worst = max(abs(x - y) for x, y in zip(a["sky_visibility"], b["sky_visibility"]))
     for channel_a, channel_b in zip(a["transfer"], b["transfer"]):
         for row_a, row_b in zip(channel_a, channel_b):
-            worst = max(worst, abs(row_a[0] - row_b[0]) / 0.2821, *(abs(x - y) / 0.9772 for x, y in zip(row_a[1:], row_b[1:])))
+            worst = max(
+                worst,
+                abs(row_a[0] - row_b[0]) / 0.2821,
+                *(abs(x - y) / 0.9772 for x, y in zip(row_a[1:], row_b[1:])),
+            )
     light_a, light_b = (p.get("static_irradiance") or [[0.0] * 4] * 3 for p in (a, b))
     full = max(STATIC_RANGE, max(x for channel in light_a for x in channel))
     return max(worst, max(abs(x - y) for ca, cb in zip(light_a, light_b) for x, y in zip(ca, cb)) / full)
@@ -42,7 +46,9 @@ def probe_error(a, b):
 def file_error(a, b):
     """Of two files of one sector; infinite when their probes stand elsewhere."""
     first, second = sector_file.read(a), sector_file.read(b)
-    if [p["position"] for p in first["probes"]] != [p["position"] for p in second["probes"]] or first["grid"] != second["grid"]:
+    if [p["position"] for p in first["probes"]] != [p["position"] for p in second["probes"]] or first[
+        "grid"
+    ] != second["grid"]:
         return float("inf")
     return max((probe_error(p, q) for p, q in zip(first["probes"], second["probes"])), default=0.0)
 
@@ -69,7 +75,18 @@ class DemoMap:
 class GeneratedMap:
     """Written anew for each edit, with all edits so far."""
 
-    KINDS = ("move_tree", "delete_tree", "add_hut", "recolor_terrain_tile", "raise_terrain_tile", "move_light", "edit_shared_mesh", "add_probe", "rename_node", "reorder_buffers")
+    KINDS = (
+        "move_tree",
+        "delete_tree",
+        "add_hut",
+        "recolor_terrain_tile",
+        "raise_terrain_tile",
+        "move_light",
+        "edit_shared_mesh",
+        "add_probe",
+        "rename_node",
+        "reorder_buffers",
+    )
     NOTHING_TO_BAKE = ("rename_node", "reorder_buffers")
 
     def __init__(self, farm, command):
@@ -81,7 +98,9 @@ class GeneratedMap:
         self.edits = []
 
     def write(self, path):
-        done = subprocess.run([*self.command, *self.edits, "-o", path], capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            [*self.command, *self.edits, "-o", path], capture_output=True, text=True, check=True
+        )
         return path, done.stderr.strip().splitlines()
 
     def edit(self, seed):
@@ -94,7 +113,9 @@ class GeneratedMap:
 class Trial:
     def __init__(self, options, farm):
         self.options, self.farm = options, farm
-        self.settings = ["--preset", "draft", "--set", f"rays={options.rays}"] + ([f"--region={options.region}"] if options.region else [])
+        self.settings = ["--preset", "draft", "--set", f"rays={options.rays}"] + (
+            [f"--region={options.region}"] if options.region else []
+        )
         self.failures, self.largest_error = 0, 0.0
 
     def bake(self, daemon, path, name, *more):
@@ -109,16 +130,27 @@ class Trial:
         wrong = sorted(name for name in fresh if exact.get(name) != fresh[name])
         if wrong:
             self.failures += 1
-            print(f"FAILED {title}: at tolerance 0 {len(wrong)} files differ: {', '.join(wrong[:5])}", flush=True)
-        error = max((file_error(near[name], fresh[name]) for name in fresh if near.get(name) != fresh[name]), default=0.0)
+            print(
+                f"FAILED {title}: at tolerance 0 {len(wrong)} files differ: {', '.join(wrong[:5])}",
+                flush=True,
+            )
+        error = max(
+            (file_error(near[name], fresh[name]) for name in fresh if near.get(name) != fresh[name]),
+            default=0.0,
+        )
         self.largest_error = max(self.largest_error, error)
         if error > TOLERANCE + ROUNDING:
             self.failures += 1
-            print(f"FAILED {title}: a coefficient is {error:.3g} of its range off, over the tolerance of {TOLERANCE:.3g}", flush=True)
+            print(
+                f"FAILED {title}: a coefficient is {error:.3g} of its range off, over the tolerance of {TOLERANCE:.3g}",
+                flush=True,
+            )
         return error
 
     def run_sequence(self, map_, seed, edits):
-        exact_daemon, near_daemon = (self.farm.daemon(f"{kind}_{seed}", "--threads", "2") for kind in ("exact", "near"))
+        exact_daemon, near_daemon = (
+            self.farm.daemon(f"{kind}_{seed}", "--threads", "2") for kind in ("exact", "near")
+        )
         first, _ = self.bake(exact_daemon, map_.first, f"exact_files_{seed}", "--exact")
         self.bake(near_daemon, map_.first, f"near_files_{seed}")
         map_.start()
@@ -132,24 +164,34 @@ class Trial:
             fresh_daemon.stop()
             shutil.rmtree(self.farm.path("fresh"))
             title = f"seed {seed}, edit {number} ({what})"
-            error = self.compare(title, {n: exact.get(n) for n in fresh}, {n: near.get(n) for n in fresh}, fresh)
+            error = self.compare(
+                title, {n: exact.get(n) for n in fresh}, {n: near.get(n) for n in fresh}, fresh
+            )
             baked = exact_job["sectors_total"] - exact_job["sectors_cached"]
-            print(f"{title}: baked {baked} of {exact_job['sectors_total']} exactly, {near_job['sectors_total'] - near_job['sectors_cached'] - near_job['sectors_near']} and {near_job['sectors_near']} near hits "
-                  f"(bound {near_job['largest_bound']:.2g}) by default, error {error:.2g}", flush=True)
+            print(
+                f"{title}: baked {baked} of {exact_job['sectors_total']} exactly, {near_job['sectors_total'] - near_job['sectors_cached'] - near_job['sectors_near']} and {near_job['sectors_near']} near hits "
+                f"(bound {near_job['largest_bound']:.2g}) by default, error {error:.2g}",
+                flush=True,
+            )
             if kind in map_.NOTHING_TO_BAKE and baked:
                 self.failures += 1
                 print(f"FAILED {title}: there was nothing to bake", flush=True)
         undone, job = self.bake(exact_daemon, map_.first, f"undone_files_{seed}", "--exact")
         if undone != first or job["sectors_cached"] != job["sectors_total"]:
             self.failures += 1
-            print(f"FAILED seed {seed}: undone, {job['sectors_cached']} of {job['sectors_total']} sectors hit", flush=True)
+            print(
+                f"FAILED seed {seed}: undone, {job['sectors_cached']} of {job['sectors_total']} sectors hit",
+                flush=True,
+            )
         for daemon in (exact_daemon, near_daemon):
             daemon.stop()
             shutil.rmtree(daemon.folder)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", required=True, help="folder of bakerd, bake and drtv")
     parser.add_argument("--edits", type=int, default=200)
     parser.add_argument("--sequence", type=int, default=50, help="edits that build on each other")
@@ -167,7 +209,9 @@ def main():
             trial.run_sequence(map_, options.seed + number, min(options.sequence, options.edits - start))
     finally:
         farm.close()
-    print(f"{options.edits} edits, {trial.failures} failures, largest error {trial.largest_error:.3g} of {TOLERANCE:.3g}")
+    print(
+        f"{options.edits} edits, {trial.failures} failures, largest error {trial.largest_error:.3g} of {TOLERANCE:.3g}"
+    )
     return 1 if trial.failures else 0
 
 

@@ -27,8 +27,19 @@ class Daemon:
         with open(self.log_path, "ab") as log:
             mark = log.tell()
             self.process = subprocess.Popen(
-                [os.path.join(self.bin_dir, "bakerd"), "serve", "--data", self.folder, "--listen", self.listen, *self.options],
-                stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+                [
+                    os.path.join(self.bin_dir, "bakerd"),
+                    "serve",
+                    "--data",
+                    self.folder,
+                    "--listen",
+                    self.listen,
+                    *self.options,
+                ],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+            )
         deadline = time.monotonic() + START_PATIENCE_S
         while time.monotonic() < deadline:
             found = re.search(r"bakerd listens on ([^,]+),", self.log(mark))
@@ -83,23 +94,45 @@ class Farm:
         self.scratch.cleanup()
 
     def run(self, program, *arguments, timeout=300, env=None):
-        return subprocess.run([os.path.join(self.bin_dir, program), *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                              timeout=timeout, check=False, env={**os.environ, **(env or {})})
+        return subprocess.run(
+            [os.path.join(self.bin_dir, program), *arguments],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=timeout,
+            check=False,
+            env={**os.environ, **(env or {})},
+        )
 
     def bake(self, daemon, *arguments, **named):
         return self.run("bake", "--server", daemon.address, *arguments, **named)
 
     def start_bake(self, daemon, *arguments):
-        return subprocess.Popen([os.path.join(self.bin_dir, "bake"), "--server", daemon.address, *arguments], stdin=subprocess.DEVNULL,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        return subprocess.Popen(
+            [os.path.join(self.bin_dir, "bake"), "--server", daemon.address, *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
 
     def job(self, daemon, number):
         return json.loads(self.bake(daemon, "--json", "status", str(number)).stdout)
 
 
 def make_island(folder, plants):
-    subprocess.run([sys.executable, os.path.join(SOURCE_DIR, "deploy/demo_map/make_demo_map.py"), "--out", folder, "--plants", str(plants)],
-                   check=True, env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})
+    subprocess.run(
+        [
+            sys.executable,
+            os.path.join(SOURCE_DIR, "deploy/demo_map/make_demo_map.py"),
+            "--out",
+            folder,
+            "--plants",
+            str(plants),
+        ],
+        check=True,
+        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+    )
     return os.path.join(folder, "island.gltf")
 
 

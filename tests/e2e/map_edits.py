@@ -41,13 +41,23 @@ class EditableMap:
     def plants(self):
         """Numbers of placed meshes in vegetation groups."""
         groups = [node for node in self.nodes if node.get("extras", {}).get("bake_role") == "vegetation"]
-        return [child for group in groups for child in group.get("children", []) if "mesh" in self.nodes[child]]
+        return [
+            child for group in groups for child in group.get("children", []) if "mesh" in self.nodes[child]
+        ]
 
     def placed(self):
-        return [number for number, node in enumerate(self.nodes) if "mesh" in node and "translation" in node and not node.get("extras")]
+        return [
+            number
+            for number, node in enumerate(self.nodes)
+            if "mesh" in node and "translation" in node and not node.get("extras")
+        ]
 
     def lights(self):
-        return [number for number, node in enumerate(self.nodes) if "KHR_lights_punctual" in node.get("extensions", {})]
+        return [
+            number
+            for number, node in enumerate(self.nodes)
+            if "KHR_lights_punctual" in node.get("extensions", {})
+        ]
 
 
 def _shift(node, rng, metres):
@@ -92,9 +102,15 @@ def add_plant(map_, rng):
 
 
 def recolour_material(map_, rng):
-    materials = [number for number, material in enumerate(map_.document["materials"]) if "pbrMetallicRoughness" in material]
+    materials = [
+        number
+        for number, material in enumerate(map_.document["materials"])
+        if "pbrMetallicRoughness" in material
+    ]
     number = rng.choice(materials)
-    colour = map_.document["materials"][number]["pbrMetallicRoughness"].setdefault("baseColorFactor", [1, 1, 1, 1])
+    colour = map_.document["materials"][number]["pbrMetallicRoughness"].setdefault(
+        "baseColorFactor", [1, 1, 1, 1]
+    )
     colour[rng.randrange(3)] *= rng.uniform(0.5, 1)
     return f"material {number}"
 
@@ -123,7 +139,9 @@ def edit_shared_mesh(map_, rng):
         x, y, z = struct.unpack_from("<3f", map_.buffer, start + n * stride)
         struct.pack_into("<3f", map_.buffer, start + n * stride, x * wider, y, z * wider)
         positions.append(struct.unpack_from("<3f", map_.buffer, start + n * stride))
-    accessor["min"], accessor["max"] = [min(p[k] for p in positions) for k in range(3)], [max(p[k] for p in positions) for k in range(3)]
+    accessor["min"], accessor["max"] = [min(p[k] for p in positions) for k in range(3)], [
+        max(p[k] for p in positions) for k in range(3)
+    ]
     return f"mesh {mesh}, {len(used[mesh])} plants"
 
 
@@ -142,7 +160,9 @@ def add_probe(map_, rng):
     place = map_.nodes[rng.choice(map_.plants())]["translation"]
     map_.document["scenes"][map_.document.get("scene", 0)]["nodes"].append(len(map_.nodes))
     at = [place[0] + rng.uniform(-3, 3), place[1] + rng.uniform(0.5, 3), place[2] + rng.uniform(-3, 3)]
-    map_.nodes.append({"name": f"probe_{len(map_.nodes)}", "translation": at, "extras": {"bake_role": "probe"}})
+    map_.nodes.append(
+        {"name": f"probe_{len(map_.nodes)}", "translation": at, "extras": {"bake_role": "probe"}}
+    )
     return f"a probe at {at}"
 
 
@@ -164,7 +184,7 @@ def reorder_buffer(map_, rng):
         while len(buffer) % 4:
             buffer.append(0)
         view["byteOffset"] = len(buffer)
-        buffer += map_.buffer[start:start + view["byteLength"]]
+        buffer += map_.buffer[start : start + view["byteLength"]]
     map_.buffer = buffer
     return "all views"
 
@@ -173,8 +193,22 @@ def touch(_map, _rng):
     return "written again as it was"
 
 
-EDITS = (move_plant, move_far, move_building, delete_plant, add_plant, recolour_material, change_role, edit_shared_mesh, move_light, dim_light, add_probe, rename_node,
-         reorder_buffer, touch)
+EDITS = (
+    move_plant,
+    move_far,
+    move_building,
+    delete_plant,
+    add_plant,
+    recolour_material,
+    change_role,
+    edit_shared_mesh,
+    move_light,
+    dim_light,
+    add_probe,
+    rename_node,
+    reorder_buffer,
+    touch,
+)
 NOTHING_TO_BAKE = (rename_node, reorder_buffer, touch)
 
 

@@ -23,7 +23,11 @@ BAKES = [
     ("island", None, ["--preset", "console"]),
     ("village", None, ["--preset", "pc", "--set", "rays=512", "--region", "-130,-130,130,130"]),
     ("volcano", "maps/volcano_island.glb", ["--preset", "console"]),
-    ("volcano_error", "maps/volcano_island.glb", ["--preset", "draft", "--set", "rays=4096", "--set", "error=0.02"]),
+    (
+        "volcano_error",
+        "maps/volcano_island.glb",
+        ["--preset", "draft", "--set", "rays=4096", "--set", "error=0.02"],
+    ),
     ("sponza", "C_sponza/sponza.gltf", ["--preset", "pc"]),
     ("rooms", "C_zdm2/zdm2.glb", ["--preset", "console"]),
 ]
@@ -31,12 +35,27 @@ BAKES = [
 
 def build(commit):
     """The folder of the commit's programs."""
-    sha = subprocess.run(["git", "-C", SOURCE_DIR, "rev-parse", "--verify", commit + "^{commit}"], check=True, capture_output=True, text=True).stdout.strip()
+    sha = subprocess.run(
+        ["git", "-C", SOURCE_DIR, "rev-parse", "--verify", commit + "^{commit}"],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.strip()
     tree = os.path.join(SOURCE_DIR, "build", "same_as", sha)
     if not os.path.isdir(tree):
         subprocess.run(["git", "-C", SOURCE_DIR, "worktree", "add", "--detach", tree, sha], check=True)
-    subprocess.run(["cmake", "--preset", "release", "-DDRTV_BUILD_TESTS=OFF"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", "--preset", "release", "--target", "bakerd", "bake"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        ["cmake", "--preset", "release", "-DDRTV_BUILD_TESTS=OFF"],
+        cwd=tree,
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
+    subprocess.run(
+        ["cmake", "--build", "--preset", "release", "--target", "bakerd", "bake"],
+        cwd=tree,
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
     return os.path.join(tree, "build", "release", "bin")
 
 
@@ -45,7 +64,9 @@ def baked(bin_dir, map_path, arguments):
     farm = Farm(bin_dir)
     try:
         daemon = farm.daemon()
-        done = farm.bake(daemon, "submit", map_path, *arguments, "--wait", "--pull", farm.path("sectors"), timeout=3600)
+        done = farm.bake(
+            daemon, "submit", map_path, *arguments, "--wait", "--pull", farm.path("sectors"), timeout=3600
+        )
         daemon.stop()
         if done.returncode != 0:
             raise SystemExit(f"same_as.py: {bin_dir}/bake ended with {done.returncode}: {done.stderr}")
@@ -70,10 +91,18 @@ def baked_once(bin_dir, map_path, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("commit")
     parser.add_argument("--bin", default=os.path.join(SOURCE_DIR, "build", "ci", "bin"))
-    parser.add_argument("--only", nargs="*", default=[name for name, _, _ in BAKES], choices=[name for name, _, _ in BAKES], metavar="NAME")
+    parser.add_argument(
+        "--only",
+        nargs="*",
+        default=[name for name, _, _ in BAKES],
+        choices=[name for name, _, _ in BAKES],
+        metavar="NAME",
+    )
     options = parser.parse_args()
     other_bin = build(options.commit)
     differing = compared = 0
@@ -89,7 +118,11 @@ def main():
             ours, theirs = baked(options.bin, path, arguments), baked_once(other_bin, path, arguments)
             names = sorted(ours.keys() | theirs.keys())
             different = [file for file in names if ours.get(file) != theirs.get(file)]
-            print(f"{name}: {len(names)} files, {len(different)} differ" + (f": {' '.join(different[:8])}" if different else ""), flush=True)
+            print(
+                f"{name}: {len(names)} files, {len(different)} differ"
+                + (f": {' '.join(different[:8])}" if different else ""),
+                flush=True,
+            )
             compared += len(names)
             differing += len(different)
     return 1 if differing or not compared else 0

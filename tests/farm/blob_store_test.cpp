@@ -17,13 +17,17 @@ namespace fs = std::filesystem;
 using test::bytes_of, test::noise, test::files_below;
 using Bytes = std::vector<std::uint8_t>;
 
-std::span<const std::uint8_t> part(const Bytes& bytes, std::size_t first, std::size_t end) { return std::span(bytes).subspan(first, end - first); }
+std::span<const std::uint8_t> part(const Bytes& bytes, std::size_t first, std::size_t end) {
+    return std::span(bytes).subspan(first, end - first);
+}
 
 class BlobStoreTest : public testing::Test {
   protected:
     BlobStoreTest() : store(std::move(*BlobStore::open(folder.path()))) {}
 
-    [[nodiscard]] std::string object(const Digest& digest) const { return folder.path() + "/objects/" + to_hex(digest).substr(0, 2) + "/" + to_hex(digest); }
+    [[nodiscard]] std::string object(const Digest& digest) const {
+        return folder.path() + "/objects/" + to_hex(digest).substr(0, 2) + "/" + to_hex(digest);
+    }
     [[nodiscard]] std::size_t temporaries() const { return files_below(folder.path() + "/tmp"); }
     [[nodiscard]] std::size_t parts() const { return files_below(folder.path() + "/uploads"); }
 
@@ -77,7 +81,9 @@ TEST_F(BlobStoreTest, ADamagedBlobIsRemovedAndReported) {
 
 TEST_F(BlobStoreTest, ADeadProcessesTemporaryIsNoObstacleAndIsRemoved) {
     // The same number may come again after a restart; the names count from anywhere.
-    for (int n = 0; n < 200; ++n) test::write_file(folder.path() + "/tmp/" + std::to_string(::getpid()) + "." + std::to_string(n), "left behind");
+    for (int n = 0; n < 200; ++n)
+        test::write_file(folder.path() + "/tmp/" + std::to_string(::getpid()) + "." + std::to_string(n),
+                         "left behind");
     EXPECT_TRUE(store->put(bytes_of("new")));
     store->remove_leftovers();
     EXPECT_EQ(temporaries(), 0u);
@@ -88,11 +94,14 @@ TEST_F(BlobStoreTest, ManyThreadsPutTheSameBlobs) {
     std::vector<std::thread> threads;
     for (int t = 0; t < 4; ++t) {
         threads.emplace_back([&] {
-            for (std::uint32_t n = 0; n < 20; ++n) EXPECT_TRUE(store->put(noise(5000, n)));
+            for (std::uint32_t n = 0; n < 20; ++n)
+                EXPECT_TRUE(store->put(noise(5000, n)));
         });
     }
-    for (std::thread& thread : threads) thread.join();
-    for (std::uint32_t n = 0; n < 20; ++n) EXPECT_EQ(store->get(map::digest_of(noise(5000, n))).value(), noise(5000, n));
+    for (std::thread& thread : threads)
+        thread.join();
+    for (std::uint32_t n = 0; n < 20; ++n)
+        EXPECT_EQ(store->get(map::digest_of(noise(5000, n))).value(), noise(5000, n));
     EXPECT_EQ(temporaries(), 0u);
 }
 
@@ -101,7 +110,8 @@ TEST_F(BlobStoreTest, AnUploadInPiecesBecomesABlobAtItsEnd) {
     const Digest digest = map::digest_of(bytes);
     auto upload = store->upload(digest, 10000, 0);
     ASSERT_TRUE(upload);
-    for (std::size_t at = 0; at < bytes.size(); at += 1000) ASSERT_TRUE(upload->append(part(bytes, at, at + 1000)));
+    for (std::size_t at = 0; at < bytes.size(); at += 1000)
+        ASSERT_TRUE(upload->append(part(bytes, at, at + 1000)));
     EXPECT_FALSE(store->has(digest));
     ASSERT_TRUE(upload->finish());
     EXPECT_EQ(store->get(digest).value(), bytes);
@@ -188,15 +198,20 @@ TEST_F(BlobStoreTest, OneBlobHasOneUploaderAtATime) {
 }
 
 TEST_F(BlobStoreTest, UploadsLeaveNoDescriptorOpen) {
-    const auto open_files = [] { return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator()); };
+    const auto open_files = [] {
+        return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+    };
     const auto before = open_files();
     for (std::uint32_t n = 0; n < 20; ++n) {
         const Bytes bytes = noise(10, n);
         auto upload = store->upload(map::digest_of(bytes), 10, 0);
         ASSERT_TRUE(upload);
-        if (n % 3 == 0) continue;  // dropped
-        const auto appended = upload->append(n % 3 == 1 ? part(bytes, 0, 10) : std::span<const std::uint8_t>(noise(11, 99)));
-        if (appended) static_cast<void>(upload->finish());
+        if (n % 3 == 0)
+            continue;  // dropped
+        const auto appended =
+            upload->append(n % 3 == 1 ? part(bytes, 0, 10) : std::span<const std::uint8_t>(noise(11, 99)));
+        if (appended)
+            static_cast<void>(upload->finish());
     }
     EXPECT_EQ(open_files(), before);
 }
@@ -205,7 +220,8 @@ TEST_F(BlobStoreTest, UploadsLeaveNoDescriptorOpen) {
 class FullDiskTest : public testing::Test {
   protected:
     void SetUp() override {
-        if (::geteuid() != 0 || ::mount("tmpfs", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "needs to mount a small disk";
+        if (::geteuid() != 0 || ::mount("tmpfs", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0)
+            GTEST_SKIP() << "needs to mount a small disk";
         mounted = true;
         store = std::move(*BlobStore::open(folder.path()));
     }
@@ -243,7 +259,8 @@ TEST_F(FullDiskTest, AnUploadSaysSoAndGoesOnWhenThereIsRoom) {
         EXPECT_EQ(appended.error().code, ErrorCode::resource_exhausted);
     }
     EXPECT_FALSE(store->has(digest));
-    fs::remove(folder.path() + "/objects/" + to_hex(ballast_digest).substr(0, 2) + "/" + to_hex(ballast_digest));
+    fs::remove(folder.path() + "/objects/" + to_hex(ballast_digest).substr(0, 2) + "/" +
+               to_hex(ballast_digest));
     const std::int64_t received = store->received_bytes(digest);
     auto upload = store->upload(digest, 30000, received);
     ASSERT_TRUE(upload);

@@ -23,7 +23,9 @@ TEST(DataFolder, ASecondLockIsRefusedAndNamesTheProcess) {
             const auto second = DataFolder::lock(folder.path());
             ASSERT_FALSE(second);
             EXPECT_EQ(second.error().code, ErrorCode::failed_precondition);
-            EXPECT_NE(second.error().message.find("(process " + std::to_string(::getpid()) + ")"), std::string::npos) << second.error().message;
+            EXPECT_NE(second.error().message.find("(process " + std::to_string(::getpid()) + ")"),
+                      std::string::npos)
+                << second.error().message;
         }
     }
     EXPECT_TRUE(DataFolder::lock(folder.path()));
@@ -34,13 +36,15 @@ TEST(DataFolder, AFormerOwnersLongerNumberIsGone) {
     test::write_file(folder.path() + "/lock", "123456789012345");
     const auto first = DataFolder::lock(folder.path());
     const auto second = DataFolder::lock(folder.path());
-    EXPECT_NE(second.error().message.find("(process " + std::to_string(::getpid()) + ")"), std::string::npos) << second.error().message;
+    EXPECT_NE(second.error().message.find("(process " + std::to_string(::getpid()) + ")"), std::string::npos)
+        << second.error().message;
 }
 
 TEST(DataFolder, APlaceThatCannotBeWrittenIsASentence) {
     const test::TemporaryFolder folder;
     test::write_file(folder.path() + "/file", "");
-    for (const std::string& path : {folder.path() + "/file", folder.path() + "/file/below", std::string("/proc/drtv")}) {
+    for (const std::string& path :
+         {folder.path() + "/file", folder.path() + "/file/below", std::string("/proc/drtv")}) {
         const auto locked = DataFolder::lock(path);
         ASSERT_FALSE(locked) << path;
         EXPECT_NE(locked.error().message.find(path), std::string::npos) << locked.error().message;

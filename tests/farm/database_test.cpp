@@ -10,7 +10,9 @@
 namespace drtv::farm {
 namespace {
 
-Digest digest_of(const std::string& text) { return map::digest_of(test::bytes_of(text)); }
+Digest digest_of(const std::string& text) {
+    return map::digest_of(test::bytes_of(text));
+}
 
 class DatabaseTest : public testing::Test {
   protected:
@@ -59,7 +61,8 @@ TEST_F(DatabaseTest, AReopenedFileHasAllOfIt) {
     const TaskRow task = add_task(-3, 5, TaskState::failed);
     EXPECT_GT(other.id, job.id);
     ASSERT_TRUE(database->add_job_task(job.id, task.id));
-    ASSERT_TRUE(database->put_map(digest_of("map"), {digest_of("content"), digest_of("inventory"), {{1, 2}}, 3, 4, {"warned"}}));
+    ASSERT_TRUE(database->put_map(
+        digest_of("map"), {digest_of("content"), digest_of("inventory"), {{1, 2}}, 3, 4, {"warned"}}));
     job.state = JobState::failed;
     job.error = "reason";
     job.ended_seconds = 2000;
@@ -77,7 +80,8 @@ TEST_F(DatabaseTest, AReopenedFileHasAllOfIt) {
     EXPECT_EQ(jobs[0].region, job.region);
     EXPECT_EQ(jobs[0].state, JobState::failed);
     EXPECT_EQ(jobs[0].error, "reason");
-    EXPECT_EQ(std::tuple(jobs[0].sectors_cached, jobs[0].created_seconds, jobs[0].ended_seconds), std::tuple(4, 1000, 2000));
+    EXPECT_EQ(std::tuple(jobs[0].sectors_cached, jobs[0].created_seconds, jobs[0].ended_seconds),
+              std::tuple(4, 1000, 2000));
     EXPECT_EQ(jobs[1].request_id, "");
 
     const auto read = database->task_by_key(task.key).value();
@@ -89,7 +93,8 @@ TEST_F(DatabaseTest, AReopenedFileHasAllOfIt) {
     EXPECT_EQ(read->state, TaskState::failed);
     EXPECT_EQ(read->failed_attempts, 2);
     EXPECT_EQ(read->result.result, task.result.result);
-    EXPECT_EQ(std::tuple(read->result.size_bytes, read->result.probes, read->result.rays), std::tuple(100, 10, 1LL << 40));
+    EXPECT_EQ(std::tuple(read->result.size_bytes, read->result.probes, read->result.rays),
+              std::tuple(100, 10, 1LL << 40));
     EXPECT_EQ(read->result.warnings, task.result.warnings);
     EXPECT_EQ(read->error, task.error);
 
@@ -113,9 +118,11 @@ TEST_F(DatabaseTest, TasksOfAJobComeByRowThenColumnInPages) {
     std::vector<map::SectorCoordinate> seen;
     for (std::int64_t first = 0; first < 12; first += 4) {
         const std::vector<TaskRow> page = database->job_tasks(job.id, first, 4).value();
-        for (const TaskRow& task : page) seen.push_back(task.sector);
+        for (const TaskRow& task : page)
+            seen.push_back(task.sector);
     }
-    EXPECT_EQ(seen, (std::vector<map::SectorCoordinate>{{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}));
+    EXPECT_EQ(seen, (std::vector<map::SectorCoordinate>{
+                        {-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}));
     EXPECT_TRUE(database->job_tasks(job.id, INT64_MAX, 4).value().empty());
     const JobCounts counts = database->job_counts(job.id).value();
     EXPECT_EQ(std::tuple(counts.total, counts.done, counts.failed, counts.probes), std::tuple(9, 5, 4, 90));
@@ -145,7 +152,9 @@ TEST_F(DatabaseTest, WarningsOfAJobComeByRowThenColumn) {
         EXPECT_TRUE(database->update_task(task));
         return task.id;
     };
-    for (const std::int64_t task : {add(5, 1, {"f"}), add(-2, 0, {"b", "c"}), add(7, -1, {"a"}), add(3, -2, {}), add(4, 0, {"d"}), add(0, 1, {"e"})}) ASSERT_TRUE(database->add_job_task(job.id, task));
+    for (const std::int64_t task : {add(5, 1, {"f"}), add(-2, 0, {"b", "c"}), add(7, -1, {"a"}),
+                                    add(3, -2, {}), add(4, 0, {"d"}), add(0, 1, {"e"})})
+        ASSERT_TRUE(database->add_job_task(job.id, task));
     ASSERT_TRUE(database->add_job_task(other.id, add(0, 0, {"of another job"})));
     using Sentences = std::vector<std::string>;
     EXPECT_EQ(database->job_warnings(job.id, 20).value(), (Sentences{"a", "b", "c", "d", "e", "f"}));
@@ -194,14 +203,27 @@ TEST_F(DatabaseTest, AKeyNamesOneTask) {
 class ResultsTest : public DatabaseTest {
   protected:
     ResultRow add_result(map::SectorCoordinate sector, const std::string& file) {
-        ResultRow row{0, sector, digest_of("settings"), {digest_of(file), 100, 10, 1000, {"one", "two"}, digest_of(file + " footprint"), digest_of("inventory"), 20, 1.5, 0.25f}};
+        ResultRow row{0,
+                      sector,
+                      digest_of("settings"),
+                      {digest_of(file),
+                       100,
+                       10,
+                       1000,
+                       {"one", "two"},
+                       digest_of(file + " footprint"),
+                       digest_of("inventory"),
+                       20,
+                       1.5,
+                       0.25f}};
         EXPECT_TRUE(database->insert_result(row));
         return row;
     }
     std::vector<Digest> files(map::SectorCoordinate sector) {
         std::vector<Digest> found;
         const std::vector<ResultRow> rows = database->results(sector, digest_of("settings"), 10).value();
-        for (const ResultRow& row : rows) found.push_back(row.result.result);
+        for (const ResultRow& row : rows)
+            found.push_back(row.result.result);
         return found;
     }
 };
@@ -216,9 +238,12 @@ TEST_F(ResultsTest, ComeTheOneUsedLastFirst) {
     EXPECT_EQ(files({1, -2}), (std::vector<Digest>{digest_of("a"), digest_of("b")}));
     EXPECT_TRUE(database->results({1, -2}, digest_of("other settings"), 10)->empty());
     const ResultRow row = database->results({1, -2}, digest_of("settings"), 1).value().at(0);
-    EXPECT_EQ(std::tuple(row.result.size_bytes, row.result.probes, row.result.rays, row.result.footprint_bytes, row.result.seconds), std::tuple(100, 10, 1000, 20, 1.5));
+    EXPECT_EQ(std::tuple(row.result.size_bytes, row.result.probes, row.result.rays,
+                         row.result.footprint_bytes, row.result.seconds),
+              std::tuple(100, 10, 1000, 20, 1.5));
     EXPECT_EQ(row.result.warnings, (std::vector<std::string>{"one", "two"}));
-    EXPECT_EQ(std::tuple(row.result.footprint, row.result.inventory), std::tuple(digest_of("a footprint"), digest_of("inventory")));
+    EXPECT_EQ(std::tuple(row.result.footprint, row.result.inventory),
+              std::tuple(digest_of("a footprint"), digest_of("inventory")));
 }
 
 TEST_F(ResultsTest, WhatARunningJobHoldsIsNotIdle) {
@@ -249,7 +274,8 @@ TEST_F(ResultsTest, AreCounted) {
     ASSERT_TRUE(database->count(3, 2, 1));
     ASSERT_TRUE(database->count(1, 0, 0));
     const CacheCounts counts = database->cache_counts().value();
-    EXPECT_EQ(std::tuple(counts.results, counts.bytes, counts.hits, counts.near_hits, counts.baked), std::tuple(2, 240, 4, 2, 1));
+    EXPECT_EQ(std::tuple(counts.results, counts.bytes, counts.hits, counts.near_hits, counts.baked),
+              std::tuple(2, 240, 4, 2, 1));
     EXPECT_EQ(database->mean_seconds(digest_of("settings")).value(), 1.5);
     EXPECT_EQ(database->mean_seconds(digest_of("never asked for")).value(), 1.5);
 }
@@ -282,13 +308,17 @@ TEST_F(DatabaseTest, ANewerSchemaIsRefusedAndLeftAlone) {
     }
 }
 
-// Records of results were of another kind before the fourth schema: those of the third are no candidates any more.
+// Records of results were of another kind before the fourth schema: those of the third are no candidates any
+// more.
 TEST_F(ResultsTest, OfTheThirdSchemaAreGivenUp) {
     add_result({1, 2}, "old");
     database.reset();
     sqlite3* handle = nullptr;
     ASSERT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
-    EXPECT_EQ(sqlite3_exec(handle, "ALTER TABLE result DROP COLUMN bound; PRAGMA user_version=3", nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(handle);
+    EXPECT_EQ(sqlite3_exec(handle, "ALTER TABLE result DROP COLUMN bound; PRAGMA user_version=3", nullptr,
+                           nullptr, nullptr),
+              SQLITE_OK)
+        << sqlite3_errmsg(handle);
     sqlite3_close(handle);
     reopen();
     EXPECT_TRUE(database->results({1, 2}, digest_of("settings"), 8)->empty());
@@ -298,7 +328,8 @@ TEST_F(ResultsTest, OfTheThirdSchemaAreGivenUp) {
     EXPECT_EQ(database->cache_counts()->results, 2);
     ASSERT_EQ(database->idle_results(8)->size(), 2u);
     ASSERT_EQ(rows.size(), 1u);
-    EXPECT_EQ(std::tuple(rows[0].result.result, rows[0].result.seconds, rows[0].result.bound), std::tuple(digest_of("new"), 1.5, 0.25f));
+    EXPECT_EQ(std::tuple(rows[0].result.result, rows[0].result.seconds, rows[0].result.bound),
+              std::tuple(digest_of("new"), 1.5, 0.25f));
 }
 
 // A file as the first schema left it: no warnings, and settings of four values.
@@ -321,18 +352,25 @@ CREATE TABLE task (
 CREATE TABLE job_task (job INTEGER NOT NULL, task INTEGER NOT NULL, PRIMARY KEY (job, task)) WITHOUT ROWID;
 PRAGMA user_version=1;
 )sql");
-        const std::string map = to_hex(digest_of("map")), settings = R"({"bounces":2,"min_distance":7.0,"rays":99,"reach":64.0})";
-        execute("INSERT INTO map VALUES ('" + map + R"(', '{"id":0,"content":")" + to_hex(digest_of("content")) + R"(","objects":3,"sectors":[[1,2]],"triangles":4,"warnings":["warned"]}'))");
-        execute("INSERT INTO job VALUES (5, 'request', '" + map + "', 'draft', '" + settings + R"(', '{"rays":"99"}', '[0,0,1,1]', 0, '', 4, 1000, 0))");
-        execute("INSERT INTO task VALUES (8, '" + to_hex(digest_of("baked")) + "', '" + map + "', -3, 5, '" + settings + "', 1, 2, '" + to_hex(digest_of("result")) + "', 100, 10, 1099511627776, '')");
-        execute("INSERT INTO task VALUES (9, '" + to_hex(digest_of("waiting")) + "', '" + map + "', -2, 5, '" + settings + "', 0, 0, '', 0, 0, 0, '')");
+        const std::string map = to_hex(digest_of("map")),
+                          settings = R"({"bounces":2,"min_distance":7.0,"rays":99,"reach":64.0})";
+        execute("INSERT INTO map VALUES ('" + map + R"(', '{"id":0,"content":")" +
+                to_hex(digest_of("content")) +
+                R"(","objects":3,"sectors":[[1,2]],"triangles":4,"warnings":["warned"]}'))");
+        execute("INSERT INTO job VALUES (5, 'request', '" + map + "', 'draft', '" + settings +
+                R"(', '{"rays":"99"}', '[0,0,1,1]', 0, '', 4, 1000, 0))");
+        execute("INSERT INTO task VALUES (8, '" + to_hex(digest_of("baked")) + "', '" + map + "', -3, 5, '" +
+                settings + "', 1, 2, '" + to_hex(digest_of("result")) + "', 100, 10, 1099511627776, '')");
+        execute("INSERT INTO task VALUES (9, '" + to_hex(digest_of("waiting")) + "', '" + map +
+                "', -2, 5, '" + settings + "', 0, 0, '', 0, 0, 0, '')");
         execute("INSERT INTO job_task VALUES (5, 8), (5, 9)");
     }
 
     void execute(const std::string& sql) const {
         sqlite3* handle = nullptr;
         ASSERT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
-        EXPECT_EQ(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(handle);
+        EXPECT_EQ(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+            << sqlite3_errmsg(handle);
         sqlite3_close(handle);
     }
 };
@@ -346,9 +384,11 @@ TEST_F(FirstSchema, OpensWithAllItsRows) {
         EXPECT_EQ(jobs[0].id, 5);
         EXPECT_EQ(jobs[0].request_id, "request");
         EXPECT_EQ(jobs[0].manifest, digest_of("map"));
-        EXPECT_EQ(std::tuple(jobs[0].preset, jobs[0].overrides, jobs[0].region), std::tuple("draft", R"({"rays":"99"})", "[0,0,1,1]"));
+        EXPECT_EQ(std::tuple(jobs[0].preset, jobs[0].overrides, jobs[0].region),
+                  std::tuple("draft", R"({"rays":"99"})", "[0,0,1,1]"));
         EXPECT_EQ(jobs[0].state, JobState::running);
-        EXPECT_EQ(std::tuple(jobs[0].sectors_cached, jobs[0].created_seconds, jobs[0].ended_seconds), std::tuple(4, 1000, 0));
+        EXPECT_EQ(std::tuple(jobs[0].sectors_cached, jobs[0].created_seconds, jobs[0].ended_seconds),
+                  std::tuple(4, 1000, 0));
 
         const auto tasks = database->job_tasks(5).value();
         ASSERT_EQ(tasks.size(), 2u);
@@ -357,7 +397,8 @@ TEST_F(FirstSchema, OpensWithAllItsRows) {
         EXPECT_EQ(tasks[0].state, TaskState::done);
         EXPECT_EQ(tasks[0].failed_attempts, 2);
         EXPECT_EQ(tasks[0].result.result, digest_of("result"));
-        EXPECT_EQ(std::tuple(tasks[0].result.size_bytes, tasks[0].result.probes, tasks[0].result.rays), std::tuple(100, 10, 1LL << 40));
+        EXPECT_EQ(std::tuple(tasks[0].result.size_bytes, tasks[0].result.probes, tasks[0].result.rays),
+                  std::tuple(100, 10, 1LL << 40));
         EXPECT_TRUE(tasks[0].result.warnings.empty());
         EXPECT_EQ(tasks[1].key, digest_of("waiting"));
         EXPECT_EQ(tasks[1].state, TaskState::pending);
@@ -378,7 +419,8 @@ TEST_F(FirstSchema, RowsKeepTheirSettings) {
     EXPECT_EQ(database->jobs().value().at(0).settings, asked);
     const auto tasks = database->job_tasks(5).value();
     ASSERT_EQ(tasks.size(), 2u);
-    for (const TaskRow& task : tasks) EXPECT_EQ(task.settings, asked);
+    for (const TaskRow& task : tasks)
+        EXPECT_EQ(task.settings, asked);
 }
 
 TEST_F(FirstSchema, TakesWarningsOnceOpened) {
@@ -389,15 +431,18 @@ TEST_F(FirstSchema, TakesWarningsOnceOpened) {
     ASSERT_TRUE(database->update_task(task));
     TaskRow fresh = add_task(0, 0);
     reopen();
-    EXPECT_EQ(database->task_by_key(digest_of("waiting")).value()->result.warnings, (std::vector<std::string>{"one", "two"}));
-    EXPECT_EQ(database->task_by_key(fresh.key).value()->result.warnings, (std::vector<std::string>{"one", "two"}));
+    EXPECT_EQ(database->task_by_key(digest_of("waiting")).value()->result.warnings,
+              (std::vector<std::string>{"one", "two"}));
+    EXPECT_EQ(database->task_by_key(fresh.key).value()->result.warnings,
+              (std::vector<std::string>{"one", "two"}));
     EXPECT_EQ(database->job_warnings(5, 20).value(), (std::vector<std::string>{"one", "two"}));
 }
 
 TEST(Database, AFileThatIsNoDatabaseOrCannotBeMadeIsASentence) {
     const test::TemporaryFolder folder;
     test::write_file(folder.path() + "/text", std::string(5000, 'x'));
-    for (const std::string& path : {folder.path() + "/text", folder.path() + "/no/such/folder", folder.path()}) {
+    for (const std::string& path :
+         {folder.path() + "/text", folder.path() + "/no/such/folder", folder.path()}) {
         const auto opened = Database::open(path);
         ASSERT_FALSE(opened) << path;
         EXPECT_GT(opened.error().message.size(), 20u);

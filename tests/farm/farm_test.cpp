@@ -21,8 +21,10 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
     static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     for (std::size_t n = 0; n < bytes.size(); n += 3) {  // REQUIRES: a multiple of 3
-        const unsigned group = static_cast<unsigned>(bytes[n]) << 16 | static_cast<unsigned>(bytes[n + 1]) << 8 | bytes[n + 2];
-        for (int shift = 18; shift >= 0; shift -= 6) text += digits[group >> shift & 63];
+        const unsigned group =
+            static_cast<unsigned>(bytes[n]) << 16 | static_cast<unsigned>(bytes[n + 1]) << 8 | bytes[n + 2];
+        for (int shift = 18; shift >= 0; shift -= 6)
+            text += digits[group >> shift & 63];
     }
     return text;
 }
@@ -30,7 +32,8 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 // A quad on the ground, world [1, size - 1] squared at this height, as it stands in a file.
 std::string ground_gltf(float size, float height = 0) {
     const float low = 1, high = size - 1;
-    const float positions[] = {low, height, -low, high, height, -low, high, height, -high, low, height, -high};
+    const float positions[] = {low,  height, -low,  high, height, -low,
+                               high, height, -high, low,  height, -high};
     const std::uint16_t indices[] = {0, 1, 2, 0, 2, 3};
     std::vector<std::uint8_t> bytes(sizeof positions + sizeof indices);
     std::memcpy(bytes.data(), positions, sizeof positions);
@@ -38,10 +41,12 @@ std::string ground_gltf(float size, float height = 0) {
     return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"scene":0,"nodes":[{"mesh":0}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[)" +
-           std::to_string(low) + "," + std::to_string(height) + "," + std::to_string(-high) + R"(],"max":[)" + std::to_string(high) + "," + std::to_string(height) + "," + std::to_string(-low) +
+           std::to_string(low) + "," + std::to_string(height) + "," + std::to_string(-high) + R"(],"max":[)" +
+           std::to_string(high) + "," + std::to_string(height) + "," + std::to_string(-low) +
            R"(]},{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],
         "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
-        "buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}]})";
+        "buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,)" +
+           base64(bytes) + R"("}]})";
 }
 
 class FarmTest : public testing::Test {
@@ -52,22 +57,37 @@ class FarmTest : public testing::Test {
     }
 
     void open(std::int64_t cache_bytes = std::int64_t{1} << 30) {
-        auto opened = Farm::open({data(), {DRTV_BINARY_DIR "/bakerd", "worker", "--blobs", data() + "/blobs", "--threads", "2"}, 2, cache_bytes});
+        auto opened =
+            Farm::open({data(),
+                        {DRTV_BINARY_DIR "/bakerd", "worker", "--blobs", data() + "/blobs", "--threads", "2"},
+                        2,
+                        cache_bytes});
         ASSERT_TRUE(opened) << opened.error().message;
         farm = std::move(*opened);
     }
     [[nodiscard]] std::string data() const { return folder.path() + "/data"; }
-    [[nodiscard]] std::string object(const Digest& digest) const { return data() + "/blobs/objects/" + to_hex(digest).substr(0, 2) + "/" + to_hex(digest); }
+    [[nodiscard]] std::string object(const Digest& digest) const {
+        return data() + "/blobs/objects/" + to_hex(digest).substr(0, 2) + "/" + to_hex(digest);
+    }
 
     Result<MapView> create(const std::string& gltf) {
         const Digest digest = farm->blobs().put(bytes_of(gltf)).value();
-        return farm->create_map({{{"map.gltf", digest, static_cast<std::int64_t>(gltf.size())}}, {"map.gltf"}});
+        return farm->create_map(
+            {{{"map.gltf", digest, static_cast<std::int64_t>(gltf.size())}}, {"map.gltf"}});
     }
 
     // Quick to bake; other `rays`, other results.
-    static JobRequest quick(const Digest& map, int rays = 16) { return {map, "draft", {{"rays", std::to_string(rays)}, {"bounces", "0"}, {"reach", "8"}, {"min_distance", "16"}}, {}, ""}; }
+    static JobRequest quick(const Digest& map, int rays = 16) {
+        return {map,
+                "draft",
+                {{"rays", std::to_string(rays)}, {"bounces", "0"}, {"reach", "8"}, {"min_distance", "16"}},
+                {},
+                ""};
+    }
     // Several seconds a sector.
-    static JobRequest endless(const Digest& map) { return {map, "draft", {{"rays", "65536"}, {"bounces", "8"}, {"min_distance", "1"}}, {}, ""}; }
+    static JobRequest endless(const Digest& map) {
+        return {map, "draft", {{"rays", "65536"}, {"bounces", "8"}, {"min_distance", "1"}}, {}, ""};
+    }
 
     JobView submit(const JobRequest& request) {
         auto job = farm->create_job(request);
@@ -75,17 +95,23 @@ class FarmTest : public testing::Test {
         return job.value();
     }
 
-    JobView wait(std::int64_t id, const std::function<bool(const JobView&)>& enough = [](const JobView& view) { return view.row.state != JobState::running; }) {
+    JobView wait(
+        std::int64_t id, const std::function<bool(const JobView&)>& enough = [](const JobView& view) {
+            return view.row.state != JobState::running;
+        }) {
         const auto end = std::chrono::steady_clock::now() + long_enough;
         JobView view = farm->get_job(id).value();
-        while (!enough(view) && std::chrono::steady_clock::now() < end) view = farm->wait_for_change(id, view.version, 500ms).value();
-        EXPECT_TRUE(enough(view)) << "job " << id << " hangs at " << view.counts.done << " of " << view.counts.total;
+        while (!enough(view) && std::chrono::steady_clock::now() < end)
+            view = farm->wait_for_change(id, view.version, 500ms).value();
+        EXPECT_TRUE(enough(view)) << "job " << id << " hangs at " << view.counts.done << " of "
+                                  << view.counts.total;
         return view;
     }
 
     void expect_succeeded(const JobView& view, std::int64_t sectors) {
         EXPECT_EQ(view.row.state, JobState::succeeded) << view.row.error;
-        EXPECT_EQ(std::tuple(view.counts.total, view.counts.done, view.counts.failed), std::tuple(sectors, sectors, 0));
+        EXPECT_EQ(std::tuple(view.counts.total, view.counts.done, view.counts.failed),
+                  std::tuple(sectors, sectors, 0));
         EXPECT_GT(view.counts.probes, 0);
         EXPECT_GE(view.row.ended_seconds, view.row.created_seconds);
     }
@@ -94,7 +120,8 @@ class FarmTest : public testing::Test {
     std::vector<Digest> results(std::int64_t job) {
         std::vector<Digest> found;
         const std::vector<SectorView> all = sectors(job);
-        for (const SectorView& sector : all) found.push_back(sector.task.result.result);
+        for (const SectorView& sector : all)
+            found.push_back(sector.task.result.result);
         return found;
     }
 
@@ -114,7 +141,9 @@ TEST_F(FarmTest, AMapIsImportedOnceAndFoundAgain) {
 }
 
 TEST_F(FarmTest, ABadMapIsRefusedWithTheImportersSentence) {
-    for (const std::string& bad : {std::string("not json"), std::string("{}"), std::string(R"({"asset":{"version":"1.0"}})"), ground_gltf(128).substr(0, 400)}) {
+    for (const std::string& bad :
+         {std::string("not json"), std::string("{}"), std::string(R"({"asset":{"version":"1.0"}})"),
+          ground_gltf(128).substr(0, 400)}) {
         const auto map = create(bad);
         ASSERT_FALSE(map) << bad;
         EXPECT_EQ(map.error().code, ErrorCode::invalid_argument);
@@ -136,7 +165,8 @@ TEST_F(FarmTest, AJobBakesAndAResubmitIsAllCache) {
     const JobView first = wait(submit(quick(map)).row.id);
     expect_succeeded(first, 4);
     EXPECT_EQ(first.row.sectors_cached, 0);
-    for (const Digest& result : results(first.row.id)) EXPECT_TRUE(farm->blobs().get(result));
+    for (const Digest& result : results(first.row.id))
+        EXPECT_TRUE(farm->blobs().get(result));
     const JobView second = submit(quick(map));
     expect_succeeded(second, 4);  // at once
     EXPECT_EQ(second.row.sectors_cached, 4);
@@ -189,7 +219,8 @@ TEST_F(FarmTest, TwoJobsThatShareSectorsBakeEachOnce) {
     // Both saw the same bakes: the rays of each sector once.
     std::int64_t rays = 0;
     const std::vector<SectorView> all = sectors(one.row.id);
-    for (const SectorView& sector : all) rays += sector.task.result.rays;
+    for (const SectorView& sector : all)
+        rays += sector.task.result.rays;
     EXPECT_EQ(first.rays, rays);
 }
 
@@ -221,7 +252,8 @@ TEST_F(FarmTest, CancelKeepsWhatIsDoneAndIsFinal) {
     expect_succeeded(wait(submit(done).row.id), 1);
     const std::int64_t whole = submit(quick(map)).row.id;
     EXPECT_GE(farm->cancel_job(whole)->counts.done, 1);
-    const JobView again = wait(submit(quick(map)).row.id);  // while the cancelled one's sectors may still be at work
+    const JobView again =
+        wait(submit(quick(map)).row.id);  // while the cancelled one's sectors may still be at work
     expect_succeeded(again, 4);
     EXPECT_GE(again.row.sectors_cached, 1);
 }
@@ -235,7 +267,8 @@ TEST_F(FarmTest, ARestartGoesOnWithTheRunningJob) {
     open();
     const JobView view = wait(id);
     expect_succeeded(view, 64);
-    for (const Digest& result : results(id)) EXPECT_TRUE(farm->blobs().has(result));
+    for (const Digest& result : results(id))
+        EXPECT_TRUE(farm->blobs().has(result));
     EXPECT_EQ(test::files_below(data() + "/blobs/tmp"), 0u);
 }
 
@@ -290,13 +323,15 @@ TEST_F(FarmTest, AnotherMapFindsWhatStillHolds) {
     night.overrides["tolerance"] = "0";
     const PlanView exact = farm->plan_job(night).value();
     EXPECT_EQ(exact.plan.count(bake::Verdict::hit), 4);
-    for (const PlannedSector& planned : exact.plan.sectors) EXPECT_EQ(planned.reason, "") << "there is none of a hit";
+    for (const PlannedSector& planned : exact.plan.sectors)
+        EXPECT_EQ(planned.reason, "") << "there is none of a hit";
     const Digest raised = create(ground_gltf(128, 1))->id;
     const PlanView other = farm->plan_job(quick(raised)).value();
     EXPECT_EQ(other.plan.count(bake::Verdict::rebake), 4);
     EXPECT_GT(other.seconds, 0);
     ASSERT_EQ(other.plan.changes.size(), 1u);
-    for (const PlannedSector& planned : other.plan.sectors) EXPECT_NE(planned.reason.find(other.plan.changes[0].what), std::string::npos) << planned.reason;
+    for (const PlannedSector& planned : other.plan.sectors)
+        EXPECT_NE(planned.reason.find(other.plan.changes[0].what), std::string::npos) << planned.reason;
     EXPECT_EQ(wait(submit(quick(raised)).row.id).row.sectors_cached, 0);
     // And back again, by the results of the first map.
     const JobView undone = submit(quick(create(gltf + "  ")->id));
@@ -309,11 +344,13 @@ TEST_F(FarmTest, ADamagedRecordIsAMissAndIsTold) {
     wait(submit(quick(map)).row.id);
     // All that is no sector file and no input.
     for (const auto& entry : std::filesystem::recursive_directory_iterator(data() + "/blobs/objects")) {
-        if (!entry.is_regular_file()) continue;
+        if (!entry.is_regular_file())
+            continue;
         std::ifstream file(entry.path(), std::ios::binary);
         char first[4] = {};
         file.read(first, 4);
-        if (std::memcmp(first, "\x28\xB5\x2F\xFD", 4) == 0) std::ofstream(entry.path(), std::ios::binary) << "damaged";
+        if (std::memcmp(first, "\x28\xB5\x2F\xFD", 4) == 0)
+            std::ofstream(entry.path(), std::ios::binary) << "damaged";
     }
     const Digest raised = create(ground_gltf(128, 1))->id;
     const JobView job = submit(quick(raised));
@@ -332,7 +369,8 @@ TEST_F(FarmTest, TheCacheKeepsToItsLimit) {
     open(all.counts.bytes / 2);
     const JobView second = wait(submit(quick(map, 17)).row.id);
     expect_succeeded(second, 64);
-    for (const Digest& result : results(second.row.id)) EXPECT_TRUE(farm->blobs().has(result)) << "needed by a job that was running";
+    for (const Digest& result : results(second.row.id))
+        EXPECT_TRUE(farm->blobs().has(result)) << "needed by a job that was running";
     // When nobody holds them any more, the next sector makes room.
     JobRequest corner = quick(map, 18);
     corner.region = Region{1, 1, 1, 1};
@@ -341,7 +379,8 @@ TEST_F(FarmTest, TheCacheKeepsToItsLimit) {
     EXPECT_LE(left.counts.bytes, left.limit_bytes);
     EXPECT_GT(left.counts.results, 0);
     std::size_t kept = 0;
-    for (const Digest& result : results(first.row.id)) kept += farm->blobs().has(result) ? 1u : 0u;
+    for (const Digest& result : results(first.row.id))
+        kept += farm->blobs().has(result) ? 1u : 0u;
     EXPECT_EQ(kept, 0u) << "those used longest ago go first";
     EXPECT_EQ(farm->clear_cache()->counts.results, 0);
     expect_succeeded(wait(submit(quick(map)).row.id), 64);
@@ -354,14 +393,16 @@ TEST_F(FarmTest, ASectorAskedForAnewIsNotCountedTwiceByARunningJob) {
     wait(first, [](const JobView& view) { return view.counts.done >= 2; });
     const std::vector<SectorView> all = sectors(first);
     for (const SectorView& sector : all) {
-        if (sector.task.state == TaskState::done) std::filesystem::remove(object(sector.task.result.result));
+        if (sector.task.state == TaskState::done)
+            std::filesystem::remove(object(sector.task.result.result));
     }
     ASSERT_EQ(farm->get_job(first)->row.state, JobState::running) << "too quick for this test";
     const std::int64_t second = submit(quick(map, 2048)).row.id;
     // Neither ends before all 64 are there.
     expect_succeeded(wait(first), 64);
     expect_succeeded(wait(second), 64);
-    for (const Digest& result : results(first)) EXPECT_TRUE(farm->blobs().has(result));
+    for (const Digest& result : results(first))
+        EXPECT_TRUE(farm->blobs().has(result));
 }
 
 TEST_F(FarmTest, AFailedSectorFailsTheJobAndAResubmitGivesItAnotherChance) {
@@ -375,7 +416,8 @@ TEST_F(FarmTest, AFailedSectorFailsTheJobAndAResubmitGivesItAnotherChance) {
     corner.region = Region{1, 1, 1, 1};
     const JobView failed = wait(submit(corner).row.id);
     EXPECT_EQ(failed.row.state, JobState::failed);
-    EXPECT_NE(failed.row.error.find("1 of 1 sectors failed; sector (0, 0): "), std::string::npos) << failed.row.error;
+    EXPECT_NE(failed.row.error.find("1 of 1 sectors failed; sector (0, 0): "), std::string::npos)
+        << failed.row.error;
     EXPECT_NE(failed.row.error.find("'map.gltf' is lost"), std::string::npos) << failed.row.error;
     ASSERT_TRUE(create(gltf));  // uploads it again
     expect_succeeded(wait(submit(corner).row.id), 1);
@@ -384,13 +426,16 @@ TEST_F(FarmTest, AFailedSectorFailsTheJobAndAResubmitGivesItAnotherChance) {
 TEST_F(FarmTest, JobsAreListedNewestFirstInPages) {
     JobRequest request = quick(create(ground_gltf(64))->id);
     std::vector<std::int64_t> ids;
-    for (int n = 0; n < 7; ++n) ids.insert(ids.begin(), submit(request).row.id);
+    for (int n = 0; n < 7; ++n)
+        ids.insert(ids.begin(), submit(request).row.id);
     std::vector<std::int64_t> seen;
     std::int64_t before = INT64_MAX;
     for (;;) {
         const auto page = farm->list_jobs(before, 3).value();
-        if (page.empty()) break;
-        for (const JobView& view : page) seen.push_back(view.row.id);
+        if (page.empty())
+            break;
+        for (const JobView& view : page)
+            seen.push_back(view.row.id);
         before = seen.back();
     }
     EXPECT_EQ(seen, ids);
@@ -399,7 +444,8 @@ TEST_F(FarmTest, JobsAreListedNewestFirstInPages) {
 }
 
 TEST_F(FarmTest, AMapWithoutGroundSucceedsAtOnceWithNothing) {
-    const auto map = create(R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"name":"empty"}]})");
+    const auto map =
+        create(R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"name":"empty"}]})");
     ASSERT_TRUE(map) << map.error().message;
     const JobView view = submit(quick(map->id));
     EXPECT_EQ(view.row.state, JobState::succeeded);

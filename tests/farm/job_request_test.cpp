@@ -14,7 +14,8 @@ using Sectors = std::vector<map::SectorCoordinate>;
 Sectors ground() {
     Sectors sectors;
     for (std::int32_t j = -2; j <= 2; ++j) {
-        for (std::int32_t i = -2; i <= 2; ++i) sectors.push_back({i, j});
+        for (std::int32_t i = -2; i <= 2; ++i)
+            sectors.push_back({i, j});
     }
     return sectors;
 }
@@ -70,7 +71,8 @@ TEST(SectorsOf, WithoutARegionAllAreChosenEvenNone) {
 TEST(SectorsOf, TilesOfEightComeAfterEachOther) {
     Sectors wide;
     for (std::int32_t j = -8; j < 8; ++j) {
-        for (std::int32_t i = -8; i < 8; ++i) wide.push_back({i, j});
+        for (std::int32_t i = -8; i < 8; ++i)
+            wide.push_back({i, j});
     }
     const auto chosen = sectors_of(std::nullopt, wide);
     ASSERT_EQ(chosen->size(), 256u);
@@ -93,12 +95,15 @@ TEST(SettingsOf, OverridesChangeAPreset) {
 TEST(SettingsOf, WrongOnesAreInvalidArguments) {
     const auto refused = [](const std::string& preset, const std::map<std::string, std::string>& overrides) {
         const auto settings = settings_of({{}, preset, overrides, {}, ""});
-        return !settings && settings.error().code == ErrorCode::invalid_argument && !settings.error().message.empty();
+        return !settings && settings.error().code == ErrorCode::invalid_argument &&
+               !settings.error().message.empty();
     };
     EXPECT_TRUE(refused("", {}));
     EXPECT_TRUE(refused("best", {}));
-    for (const char* value : {"", "x", "0", "-1", "64x", "1e9", "99999999999999999999", " 64", "64.5"}) EXPECT_TRUE(refused("draft", {{"rays", value}})) << value;
-    for (const char* value : {"nan", "inf", "-1", "0", "1e30", ""}) EXPECT_TRUE(refused("draft", {{"reach", value}})) << value;
+    for (const char* value : {"", "x", "0", "-1", "64x", "1e9", "99999999999999999999", " 64", "64.5"})
+        EXPECT_TRUE(refused("draft", {{"rays", value}})) << value;
+    for (const char* value : {"nan", "inf", "-1", "0", "1e30", ""})
+        EXPECT_TRUE(refused("draft", {{"reach", value}})) << value;
     EXPECT_TRUE(refused("draft", {{"colour", "red"}}));
 }
 
@@ -106,7 +111,8 @@ TEST(JobRequest, RegionAndOverridesComeBackFromTheDatabase) {
     const Region region{-0.1, 1e-9, 1.0 / 3, 1e9};
     const auto read = decode_region(encode_region(region));
     ASSERT_TRUE(read);
-    EXPECT_EQ(std::tuple(read->x0, read->y0, read->x1, read->y1), std::tuple(region.x0, region.y0, region.x1, region.y1));
+    EXPECT_EQ(std::tuple(read->x0, read->y0, read->x1, read->y1),
+              std::tuple(region.x0, region.y0, region.x1, region.y1));
     EXPECT_FALSE(decode_region(encode_region(std::nullopt)));
     const std::map<std::string, std::string> overrides = {{"rays", "64"}, {"a \"b\"", ""}};
     EXPECT_EQ(decode_overrides(encode_overrides(overrides)), overrides);

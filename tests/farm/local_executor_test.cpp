@@ -26,7 +26,8 @@ class LocalExecutorTest : public testing::Test {
         LocalExecutor::Callbacks callbacks;
         callbacks.next = [this]() -> std::optional<BakeRequest> {
             const std::lock_guard lock(mutex);
-            if (queue.empty()) return std::nullopt;
+            if (queue.empty())
+                return std::nullopt;
             const BakeRequest request = queue.front();
             queue.pop_front();
             changed.notify_all();
@@ -34,10 +35,12 @@ class LocalExecutorTest : public testing::Test {
         };
         callbacks.finished = [this](std::uint64_t id, int failed_attempts, Outcome outcome) {
             const std::lock_guard lock(mutex);
-            EXPECT_TRUE(outcomes.emplace(id, std::pair(failed_attempts, std::move(outcome))).second) << id << " finished twice";
+            EXPECT_TRUE(outcomes.emplace(id, std::pair(failed_attempts, std::move(outcome))).second)
+                << id << " finished twice";
             changed.notify_all();
         };
-        executor = std::make_unique<LocalExecutor>(LocalExecutor::Options{std::move(command), threads, stall_limit}, std::move(callbacks));
+        executor = std::make_unique<LocalExecutor>(
+            LocalExecutor::Options{std::move(command), threads, stall_limit}, std::move(callbacks));
     }
     void start_fake(const std::string& mode, int threads = 2) { start({DRTV_FAKE_WORKER, mode}, threads); }
 
@@ -76,35 +79,43 @@ class LocalExecutorTest : public testing::Test {
     std::chrono::milliseconds stall_limit = std::chrono::minutes(30);
     std::mutex mutex;
     std::condition_variable changed;
-    std::deque<BakeRequest> queue;                                 // guarded by mutex
-    std::map<std::uint64_t, std::pair<int, Outcome>> outcomes;     // guarded by mutex
-    std::size_t added = 0;                                         // guarded by mutex
-    std::unique_ptr<LocalExecutor> executor;  // last: its thread uses the above
+    std::deque<BakeRequest> queue;                              // guarded by mutex
+    std::map<std::uint64_t, std::pair<int, Outcome>> outcomes;  // guarded by mutex
+    std::size_t added = 0;                                      // guarded by mutex
+    std::unique_ptr<LocalExecutor> executor;                    // last: its thread uses the above
 };
 
 TEST_F(LocalExecutorTest, SectorsAreBakedAndEachAnswerFindsItsOwn) {
     start_fake("normal");
-    for (int n = 0; n < 200; ++n) add(fake::good);
+    for (int n = 0; n < 200; ++n)
+        add(fake::good);
     ASSERT_TRUE(wait_for_all());
-    for (std::uint64_t id = 0; id < 200; ++id) expect_baked(id);
-    for (int n = 0; n < 5; ++n) add(fake::good);  // and again after a rest
+    for (std::uint64_t id = 0; id < 200; ++id)
+        expect_baked(id);
+    for (int n = 0; n < 5; ++n)
+        add(fake::good);  // and again after a rest
     EXPECT_TRUE(wait_for_all());
 }
 
 TEST_F(LocalExecutorTest, AnswersMayComeInAnyOrder) {
     start({DRTV_FAKE_WORKER, "reverse", "6"}, 4);
-    for (int n = 0; n < 60; ++n) add(fake::good);
+    for (int n = 0; n < 60; ++n)
+        add(fake::good);
     ASSERT_TRUE(wait_for_all());
-    for (std::uint64_t id = 0; id < 60; ++id) expect_baked(id);
+    for (std::uint64_t id = 0; id < 60; ++id)
+        expect_baked(id);
 }
 
 TEST_F(LocalExecutorTest, ASectorThatKillsTheWorkerFailsAloneAfterThreeAttempts) {
     start_fake("normal", 4);
-    for (int n = 0; n < 40; ++n) add(n == 7 || n == 8 || n == 30 ? fake::deadly : fake::good);
+    for (int n = 0; n < 40; ++n)
+        add(n == 7 || n == 8 || n == 30 ? fake::deadly : fake::good);
     ASSERT_TRUE(wait_for_all());
     for (std::uint64_t id = 0; id < 40; ++id) {
-        if (id == 7 || id == 8 || id == 30) expect_failed(id, max_attempts, "signal 9");
-        else expect_baked(id);
+        if (id == 7 || id == 8 || id == 30)
+            expect_failed(id, max_attempts, "signal 9");
+        else
+            expect_baked(id);
     }
 }
 
@@ -131,19 +142,25 @@ TEST_F(LocalExecutorTest, ARetryableFailureIsTriedAgainAndAHopelessOneIsNot) {
 
 TEST_F(LocalExecutorTest, AnswersToNobodyAreIgnored) {
     start_fake("normal");
-    for (int n = 0; n < 10; ++n) add(n % 2 == 0 ? fake::unknown_id : fake::twice);
+    for (int n = 0; n < 10; ++n)
+        add(n % 2 == 0 ? fake::unknown_id : fake::twice);
     ASSERT_TRUE(wait_for_all());
-    for (std::uint64_t id = 0; id < 10; ++id) expect_baked(id);
+    for (std::uint64_t id = 0; id < 10; ++id)
+        expect_baked(id);
 }
 
 TEST_F(LocalExecutorTest, AWorkerThatNeverLivesFailsEachSectorWithAReason) {
-    for (const auto& [mode, reason] : {std::pair("die_at_start", "status 4"), std::pair("garbage", "signal 9"), std::pair("close_output", "signal 9")}) {
+    for (const auto& [mode, reason] :
+         {std::pair("die_at_start", "status 4"), std::pair("garbage", "signal 9"),
+          std::pair("close_output", "signal 9")}) {
         start_fake(mode);
         added = 0;
         outcomes.clear();
-        for (int n = 0; n < 5; ++n) add(fake::good);
+        for (int n = 0; n < 5; ++n)
+            add(fake::good);
         ASSERT_TRUE(wait_for_all()) << mode;
-        for (std::uint64_t id = 0; id < 5; ++id) expect_failed(id, max_attempts, reason);
+        for (std::uint64_t id = 0; id < 5; ++id)
+            expect_failed(id, max_attempts, reason);
         executor.reset();
     }
 }
@@ -157,7 +174,8 @@ TEST_F(LocalExecutorTest, AWorkerThatCannotBeStartedIsSaid) {
 
 TEST_F(LocalExecutorTest, InspectionsAreAnsweredWhileSectorsWait) {
     start_fake("normal");
-    for (int n = 0; n < 50; ++n) add(fake::good);
+    for (int n = 0; n < 50; ++n)
+        add(fake::good);
     executor->wake();
     map::Digest manifest;
     manifest.bytes[5] = 77;
@@ -173,24 +191,28 @@ TEST_F(LocalExecutorTest, AMapThatKillsTheWorkerFailsWithAReason) {
     start_fake("normal");
     map::Digest manifest;
     manifest.bytes[0] = fake::deadly_map;
-    for (int n = 0; n < 10; ++n) add(fake::good);
+    for (int n = 0; n < 10; ++n)
+        add(fake::good);
     auto answer = executor->ask(InspectRequest{0, manifest});
     ASSERT_EQ(answer.wait_for(long_enough), std::future_status::ready);
     const Outcome outcome = answer.get();
     ASSERT_TRUE(std::holds_alternative<FailureAnswer>(outcome));
     EXPECT_NE(std::get<FailureAnswer>(outcome).sentence.find("signal 9"), std::string::npos);
     ASSERT_TRUE(wait_for_all());
-    for (std::uint64_t id = 0; id < 10; ++id) expect_baked(id);
+    for (std::uint64_t id = 0; id < 10; ++id)
+        expect_baked(id);
 }
 
 TEST_F(LocalExecutorTest, AnInspectionThatMustWaitCostsNoTime) {
     start_fake("normal", 1);
-    for (int n = 0; n < 3; ++n) add(fake::silent);  // the window is full, for ever
+    for (int n = 0; n < 3; ++n)
+        add(fake::silent);  // the window is full, for ever
     wait_until_taken(3);
     auto answer = executor->ask(InspectRequest{0, {}});
     const std::clock_t before = std::clock();
     EXPECT_EQ(answer.wait_for(500ms), std::future_status::timeout);
-    EXPECT_LT(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC, 0.1);  // 0.2 to 0.5 when the thread spins
+    EXPECT_LT(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC,
+              0.1);  // 0.2 to 0.5 when the thread spins
     executor.reset();
     EXPECT_EQ(answer.wait_for(0s), std::future_status::ready);
 }
@@ -200,7 +222,8 @@ TEST_F(LocalExecutorTest, TheDestructorAnswersPendingInspections) {
     map::Digest silent;
     silent.bytes[0] = fake::silent_map;
     std::vector<std::future<Outcome>> answers;
-    for (int n = 0; n < 6; ++n) answers.push_back(executor->ask(InspectRequest{0, silent}));
+    for (int n = 0; n < 6; ++n)
+        answers.push_back(executor->ask(InspectRequest{0, silent}));
     std::this_thread::sleep_for(100ms);
     executor.reset();
     for (auto& answer : answers) {
@@ -216,11 +239,13 @@ TEST_F(LocalExecutorTest, StopWaitsForWhatIsInFlightAndStartsNothing) {
     const test::TemporaryFolder folder;
     const std::string gate = folder.path() + "/gate";
     start({DRTV_FAKE_WORKER, "gate", gate}, 1);
-    for (int n = 0; n < 20; ++n) add(fake::gated);
+    for (int n = 0; n < 20; ++n)
+        add(fake::gated);
     wait_until_taken(3);  // the window
     std::thread stopping([&] { executor->stop(long_enough); });
     // A question is refused from the moment on that the stop has begun; the gate opens only then.
-    while (executor->ask(InspectRequest{0, {}}).wait_for(2ms) != std::future_status::ready) {}
+    while (executor->ask(InspectRequest{0, {}}).wait_for(2ms) != std::future_status::ready) {
+    }
     EXPECT_TRUE(outcomes.empty());
     test::write_file(gate, "open");
     stopping.join();
@@ -231,7 +256,8 @@ TEST_F(LocalExecutorTest, StopWaitsForWhatIsInFlightAndStartsNothing) {
 TEST_F(LocalExecutorTest, StopRightAfterAWakeLosesNothing) {
     for (int round = 0; round < 30; ++round) {
         start_fake("normal", 2);
-        for (int n = 0; n < 8; ++n) add(fake::good);
+        for (int n = 0; n < 8; ++n)
+            add(fake::good);
         executor->wake();
         std::this_thread::sleep_for(std::chrono::microseconds(100 * round));
         executor->stop(10s);
@@ -258,11 +284,14 @@ TEST_F(LocalExecutorTest, SectorThatHangsTheWorkerFailsAloneAndTheRestGoesOn) {
     start_fake("normal");
     add(fake::good);
     add(fake::silent);
-    for (int n = 0; n < 10; ++n) add(fake::good);
+    for (int n = 0; n < 10; ++n)
+        add(fake::good);
     ASSERT_TRUE(wait_for_all());
     for (std::uint64_t id = 0; id < added; ++id) {
-        if (id == 1) expect_failed(id, max_attempts, "gave no sign");
-        else expect_baked(id);
+        if (id == 1)
+            expect_failed(id, max_attempts, "gave no sign");
+        else
+            expect_baked(id);
     }
 }
 

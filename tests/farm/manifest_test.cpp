@@ -8,11 +8,14 @@
 namespace drtv::farm {
 namespace {
 
-Digest digest_of(const std::string& text) { return map::digest_of(test::bytes_of(text)); }
+Digest digest_of(const std::string& text) {
+    return map::digest_of(test::bytes_of(text));
+}
 
 Manifest manifest(const std::vector<std::string>& paths, const std::vector<std::string>& roots) {
     Manifest made{{}, roots};
-    for (const std::string& path : paths) made.files.push_back({path, digest_of(path), 12});
+    for (const std::string& path : paths)
+        made.files.push_back({path, digest_of(path), 12});
     return made;
 }
 
@@ -24,13 +27,30 @@ void expect_refused(const Manifest& bad, const std::string& with) {
 }
 
 TEST(Manifest, PathsThatLeaveTheMapOrHaveTwoSpellingsAreRefused) {
-    const std::vector<std::string> bad = {"", "/a", "../a", "a/../b", "a/..", "..", ".", "./a", "a/./b", "a//b", "a/", "a\\b", "C:\\a", std::string("a\0b", 3), std::string(1025, 'a')};
-    for (const std::string& path : bad) expect_refused(manifest({"root.gltf", path}, {"root.gltf"}), "plain relative path");
+    const std::vector<std::string> bad = {"",
+                                          "/a",
+                                          "../a",
+                                          "a/../b",
+                                          "a/..",
+                                          "..",
+                                          ".",
+                                          "./a",
+                                          "a/./b",
+                                          "a//b",
+                                          "a/",
+                                          "a\\b",
+                                          "C:\\a",
+                                          std::string("a\0b", 3),
+                                          std::string(1025, 'a')};
+    for (const std::string& path : bad)
+        expect_refused(manifest({"root.gltf", path}, {"root.gltf"}), "plain relative path");
 }
 
 TEST(Manifest, PlainPathsArePassed) {
-    const std::vector<std::string> good = {"a", "a.b/c..d", "...", "..a/b..", " ", "\xc3\xa4/\xe6\x97\xa5", std::string(1024, 'a')};
-    for (const std::string& path : good) EXPECT_TRUE(normalised(manifest({path}, {path}))) << path;
+    const std::vector<std::string> good = {
+        "a", "a.b/c..d", "...", "..a/b..", " ", "\xc3\xa4/\xe6\x97\xa5", std::string(1024, 'a')};
+    for (const std::string& path : good)
+        EXPECT_TRUE(normalised(manifest({path}, {path}))) << path;
 }
 
 TEST(Manifest, AFileOrRootThatStandsTwiceIsRefused) {
@@ -74,7 +94,10 @@ TEST(Manifest, EveryPrefixIsDataLoss) {
         ASSERT_FALSE(read) << size;
         EXPECT_EQ(read.error().code, ErrorCode::data_loss);
     }
-    for (const char* odd : {"null", "[]", "7", R"({"roots":[]})", R"({"roots":7,"files":[]})", R"({"roots":[],"files":[{"path":"a","sha256":"00","size":1}]})", R"({"roots":[],"files":[7]})"}) EXPECT_FALSE(decode_manifest(odd)) << odd;
+    for (const char* odd :
+         {"null", "[]", "7", R"({"roots":[]})", R"({"roots":7,"files":[]})",
+          R"({"roots":[],"files":[{"path":"a","sha256":"00","size":1}]})", R"({"roots":[],"files":[7]})"})
+        EXPECT_FALSE(decode_manifest(odd)) << odd;
 }
 
 TEST(ManifestSource, SaysWhichFileIsMissingLostOrDamaged) {

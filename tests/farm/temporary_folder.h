@@ -1,8 +1,8 @@
 // A folder for one test, gone with it, and bytes to fill it with.
 #pragma once
 
-#include <cstdint>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -8,7 +8,13 @@ namespace {
 
 const map::Digest some_digest = map::digest_of(test::bytes_of("some"));
 
-BakeRequest bake_request() { return {UINT64_MAX, some_digest, {-16384, 16384}, {.rays = 17, .bounces = 0, .reach_m = 0.1f, .min_distance_m = 64}, {}}; }
+BakeRequest bake_request() {
+    return {UINT64_MAX,
+            some_digest,
+            {-16384, 16384},
+            {.rays = 17, .bounces = 0, .reach_m = 0.1f, .min_distance_m = 64},
+            {}};
+}
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     const std::size_t at = text.find(what);
@@ -24,18 +30,26 @@ TEST(WorkerProtocol, RequestsComeBackAsTheyWere) {
     EXPECT_EQ(bake.settings, bake_request().settings);  // the float to its last bit
     EXPECT_FALSE(bake.earlier);
     BakeRequest request = bake_request();
-    request.earlier = {some_digest, map::digest_of(test::bytes_of("footprint")), map::digest_of(test::bytes_of("inventory"))};
+    request.earlier = {some_digest, map::digest_of(test::bytes_of("footprint")),
+                       map::digest_of(test::bytes_of("inventory"))};
     const auto with_earlier = std::get<BakeRequest>(decode_request(encode(WorkerRequest(request))).value());
     ASSERT_TRUE(with_earlier.earlier);
-    EXPECT_EQ(std::tuple(with_earlier.earlier->file, with_earlier.earlier->footprint, with_earlier.earlier->inventory), std::tuple(some_digest, request.earlier->footprint, request.earlier->inventory));
-    const auto inspect = std::get<InspectRequest>(decode_request(encode(WorkerRequest(InspectRequest{3, some_digest}))).value());
+    EXPECT_EQ(std::tuple(with_earlier.earlier->file, with_earlier.earlier->footprint,
+                         with_earlier.earlier->inventory),
+              std::tuple(some_digest, request.earlier->footprint, request.earlier->inventory));
+    const auto inspect = std::get<InspectRequest>(
+        decode_request(encode(WorkerRequest(InspectRequest{3, some_digest}))).value());
     EXPECT_EQ(inspect.id, 3u);
     EXPECT_EQ(inspect.manifest, some_digest);
 }
 
 TEST(WorkerProtocol, AssessmentsComeBackAsTheyWere) {
     const map::Digest other = map::digest_of(test::bytes_of("other"));
-    AssessRequest request{4, some_digest, bake_request().settings, {{{1, -2}, {{some_digest, some_digest, other}, {some_digest, other, some_digest}}}, {{3, 4}, {}}}};
+    AssessRequest request{
+        4,
+        some_digest,
+        bake_request().settings,
+        {{{1, -2}, {{some_digest, some_digest, other}, {some_digest, other, some_digest}}}, {{3, 4}, {}}}};
     request.settings.tolerance = 0.1f;
     const auto back = std::get<AssessRequest>(decode_request(encode(WorkerRequest(request))).value());
     EXPECT_EQ(back.manifest, some_digest);
@@ -47,12 +61,15 @@ TEST(WorkerProtocol, AssessmentsComeBackAsTheyWere) {
     EXPECT_EQ(back.sectors[0].candidates[1].inventory, some_digest);
 
     AssessAnswer answer;
-    answer.sectors = {{bake::Verdict::near_hit, 1, 0.1f, 0, "why"}, {bake::Verdict::rebake, 0, 0, 0.25f, "because"}};
+    answer.sectors = {{bake::Verdict::near_hit, 1, 0.1f, 0, "why"},
+                      {bake::Verdict::rebake, 0, 0, 0.25f, "because"}};
     answer.changes = {{"a tree moved", {{1, 2, 3}, {4, 5, 6.5f}}}};
     answer.warnings = {"lost"};
     const auto given = std::get<AssessAnswer>(decode_answer(encode(WorkerAnswer{9, answer})).value().what);
     ASSERT_EQ(given.sectors.size(), 2u);
-    EXPECT_EQ(std::tuple(given.sectors[0].verdict, given.sectors[0].candidate, given.sectors[0].bound, given.sectors[0].reason), std::tuple(bake::Verdict::near_hit, 1u, 0.1f, "why"));
+    EXPECT_EQ(std::tuple(given.sectors[0].verdict, given.sectors[0].candidate, given.sectors[0].bound,
+                         given.sectors[0].reason),
+              std::tuple(bake::Verdict::near_hit, 1u, 0.1f, "why"));
     EXPECT_EQ(given.sectors[1].share, 0.25f);
     ASSERT_EQ(given.changes.size(), 1u);
     EXPECT_EQ(given.changes[0].bounds.high, glm::vec3(4, 5, 6.5f));
@@ -68,14 +85,17 @@ TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
         EXPECT_EQ(answer.value().id, 9u);
         return answer->what;
     };
-    const auto baked = std::get<BakeAnswer>(round(BakeAnswer{some_digest, 15000, 70, 1LL << 40, {"a wall"}, some_digest, some_digest, 12, 0.3, 0.1f}));
+    const auto baked = std::get<BakeAnswer>(round(
+        BakeAnswer{some_digest, 15000, 70, 1LL << 40, {"a wall"}, some_digest, some_digest, 12, 0.3, 0.1f}));
     EXPECT_EQ(std::tuple(baked.footprint_bytes, baked.seconds, baked.bound), std::tuple(12, 0.3, 0.1f));
-    EXPECT_EQ(std::tuple(baked.result, baked.size_bytes, baked.probes, baked.rays), std::tuple(some_digest, 15000, 70, 1LL << 40));
+    EXPECT_EQ(std::tuple(baked.result, baked.size_bytes, baked.probes, baked.rays),
+              std::tuple(some_digest, 15000, 70, 1LL << 40));
     EXPECT_EQ(baked.warnings, std::vector<std::string>{"a wall"});
     const auto failure = std::get<FailureAnswer>(round(FailureAnswer{"two\nlines, \"quotes\"", true}));
     EXPECT_EQ(failure.sentence, "two\nlines, \"quotes\"");
     EXPECT_TRUE(failure.may_retry);
-    const auto inspected = std::get<InspectAnswer>(round(InspectAnswer{some_digest, map::digest_of(test::bytes_of("inventory")), {{1, -2}, {3, 4}}, 5, 6, {"warned"}}));
+    const auto inspected = std::get<InspectAnswer>(round(InspectAnswer{
+        some_digest, map::digest_of(test::bytes_of("inventory")), {{1, -2}, {3, 4}}, 5, 6, {"warned"}}));
     EXPECT_EQ(inspected.content, some_digest);
     EXPECT_EQ(inspected.sectors, (std::vector<map::SectorCoordinate>{{1, -2}, {3, 4}}));
     EXPECT_EQ(std::tuple(inspected.object_count, inspected.triangle_count), std::tuple(5, 6));
@@ -89,10 +109,15 @@ TEST(WorkerProtocol, ASentenceThatIsNotUtf8IsStillALine) {
 }
 
 TEST(WorkerProtocol, GarbageIsNothing) {
-    const std::string request = encode(WorkerRequest(bake_request())), answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3, {}}});
-    for (std::size_t size = 0; size < request.size(); ++size) EXPECT_FALSE(decode_request(request.substr(0, size))) << size;
-    for (std::size_t size = 0; size < answer.size(); ++size) EXPECT_FALSE(decode_answer(answer.substr(0, size))) << size;
-    for (const std::string& odd : {std::string(), std::string("null"), std::string("[]"), std::string("7"), std::string("{}"), std::string(R"({"id":1})"), std::string("\xff"), std::string("\0", 1), std::string(100000, '[')}) {
+    const std::string request = encode(WorkerRequest(bake_request())),
+                      answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3, {}}});
+    for (std::size_t size = 0; size < request.size(); ++size)
+        EXPECT_FALSE(decode_request(request.substr(0, size))) << size;
+    for (std::size_t size = 0; size < answer.size(); ++size)
+        EXPECT_FALSE(decode_answer(answer.substr(0, size))) << size;
+    for (const std::string& odd :
+         {std::string(), std::string("null"), std::string("[]"), std::string("7"), std::string("{}"),
+          std::string(R"({"id":1})"), std::string("\xff"), std::string("\0", 1), std::string(100000, '[')}) {
         EXPECT_FALSE(decode_request(odd)) << odd.substr(0, 20);
         EXPECT_FALSE(decode_answer(odd)) << odd.substr(0, 20);
     }
@@ -101,14 +126,22 @@ TEST(WorkerProtocol, GarbageIsNothing) {
 }
 
 TEST(WorkerProtocol, NumbersOutOfRangeAreNothing) {
-    const std::string request = encode(WorkerRequest(bake_request())), answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3, {}}});
-    for (const char* bad : {"4294967296", "2147483648", "1.5", "\"1\"", "null", "1e30", "true"}) EXPECT_FALSE(decode_request(replaced(request, "[-16384,", std::string("[") + bad + ","))) << bad;
-    for (const char* bad : {"-1", "4294967296", "17.5", "1e30"}) EXPECT_FALSE(decode_request(replaced(request, R"("rays":17)", std::string(R"("rays":)") + bad))) << bad;
-    for (const char* bad : {"-9", "9.0", "18446744073709551616", "\"9\""}) EXPECT_FALSE(decode_answer(replaced(answer, R"("id":9)", std::string(R"("id":)") + bad))) << bad;
-    for (const char* bad : {"9223372036854775808", "0.5", "null"}) EXPECT_FALSE(decode_answer(replaced(answer, R"("size":1)", std::string(R"("size":)") + bad))) << bad;
+    const std::string request = encode(WorkerRequest(bake_request())),
+                      answer = encode(WorkerAnswer{9, BakeAnswer{some_digest, 1, 2, 3, {}}});
+    for (const char* bad : {"4294967296", "2147483648", "1.5", "\"1\"", "null", "1e30", "true"})
+        EXPECT_FALSE(decode_request(replaced(request, "[-16384,", std::string("[") + bad + ","))) << bad;
+    for (const char* bad : {"-1", "4294967296", "17.5", "1e30"})
+        EXPECT_FALSE(decode_request(replaced(request, R"("rays":17)", std::string(R"("rays":)") + bad)))
+            << bad;
+    for (const char* bad : {"-9", "9.0", "18446744073709551616", "\"9\""})
+        EXPECT_FALSE(decode_answer(replaced(answer, R"("id":9)", std::string(R"("id":)") + bad))) << bad;
+    for (const char* bad : {"9223372036854775808", "0.5", "null"})
+        EXPECT_FALSE(decode_answer(replaced(answer, R"("size":1)", std::string(R"("size":)") + bad))) << bad;
 }
 
-TEST(WorkerProtocol, AnUnknownRequestIsNothing) { EXPECT_FALSE(decode_request(replaced(encode(WorkerRequest(bake_request())), "\"bake\"", "\"boil\""))); }
+TEST(WorkerProtocol, AnUnknownRequestIsNothing) {
+    EXPECT_FALSE(decode_request(replaced(encode(WorkerRequest(bake_request())), "\"bake\"", "\"boil\"")));
+}
 
 TEST(WorkerProtocol, SettingsComeBackFromTheDatabase) {
     EXPECT_EQ(decode_settings(encode_settings(bake_request().settings)).value(), bake_request().settings);

@@ -1,4 +1,5 @@
-// Its own file, so that no call of new is inlined beside a call of delete that the compiler does not know for its partner.
+// Its own file, so that no call of new is inlined beside a call of delete that the compiler does not know for
+// its partner.
 #include "tests/format/allocation_count.h"
 
 #include <atomic>
@@ -13,7 +14,8 @@ std::atomic<std::size_t> allocations = 0;
 
 void* operator new(std::size_t size) {
     ++allocations;
-    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+    if (void* memory = std::malloc(size == 0 ? 1 : size))
+        return memory;
     throw std::bad_alloc();
 }
 // The sanitizers' own would not come here.
@@ -21,11 +23,17 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     ++allocations;
     return std::malloc(size == 0 ? 1 : size);
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
 
 namespace drtv::test {
 
-std::size_t allocation_count() { return allocations; }
+std::size_t allocation_count() {
+    return allocations;
+}
 
 }  // namespace drtv::test

@@ -14,11 +14,14 @@ namespace {
 std::vector<std::uint8_t> random_bytes(std::size_t size) {
     std::mt19937 random(7);
     std::vector<std::uint8_t> bytes(size);
-    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+    for (std::uint8_t& byte : bytes)
+        byte = static_cast<std::uint8_t>(random());
     return bytes;
 }
 
-TEST(Checksum, NothingHasTheValueOfTheSpecification) { EXPECT_EQ(xxh64({}), 0xEF46DB3751D8E999u); }
+TEST(Checksum, NothingHasTheValueOfTheSpecification) {
+    EXPECT_EQ(xxh64({}), 0xEF46DB3751D8E999u);
+}
 
 TEST(Checksum, EveryLengthAgreesWithLibxxhash) {
     const std::vector<std::uint8_t> bytes = random_bytes(600);
@@ -35,7 +38,9 @@ TEST(Checksum, LongInputAgreesWithLibxxhash) {
 TEST(Checksum, UnalignedInputAgreesWithLibxxhash) {
     const std::vector<std::uint8_t> bytes = random_bytes(200);
     for (std::size_t start = 0; start < 16; ++start) {
-        EXPECT_EQ(xxh64(std::span(bytes).subspan(start)), XXH64(bytes.data() + start, bytes.size() - start, 0)) << start;
+        EXPECT_EQ(xxh64(std::span(bytes).subspan(start)),
+                  XXH64(bytes.data() + start, bytes.size() - start, 0))
+            << start;
     }
 }
 

@@ -20,7 +20,8 @@ constexpr std::array<float, 2> scales = {transfer_scale, sky_visibility_scale};
 
 double dot(const Float3& a, const Float3& b) {
     double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) sum += static_cast<double>(a[k]) * static_cast<double>(b[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+        sum += static_cast<double>(a[k]) * static_cast<double>(b[k]);
     return sum;
 }
 
@@ -32,7 +33,8 @@ double integrate_sphere(Integrand integrand) {
         const double theta = (t + 0.5) * std::numbers::pi / thetas;
         for (int p = 0; p < phis; ++p) {
             const double phi = (p + 0.5) * 2 * std::numbers::pi / phis;
-            const Float3 w = {static_cast<float>(std::sin(theta) * std::cos(phi)), static_cast<float>(std::sin(theta) * std::sin(phi)),
+            const Float3 w = {static_cast<float>(std::sin(theta) * std::cos(phi)),
+                              static_cast<float>(std::sin(theta) * std::sin(phi)),
                               static_cast<float>(std::cos(theta))};
             sum += integrand(w) * std::sin(theta);
         }
@@ -42,15 +44,20 @@ double integrate_sphere(Integrand integrand) {
 
 TEST(TransferBasis, FirstThreeAreOrthonormal) {
     for (std::size_t a = 0; a < 3; ++a) {
-        for (std::size_t b = 0; b < 3; ++b) EXPECT_NEAR(dot(transfer_basis[a], transfer_basis[b]), a == b ? 1 : 0, constant_tolerance) << a << b;
+        for (std::size_t b = 0; b < 3; ++b)
+            EXPECT_NEAR(dot(transfer_basis[a], transfer_basis[b]), a == b ? 1 : 0, constant_tolerance)
+                << a << b;
     }
 }
 
 TEST(TransferBasis, FirstThreeLeanEquallyFromUp) {
-    for (std::size_t b = 0; b < 3; ++b) EXPECT_NEAR(transfer_basis[b][2], 1 / std::sqrt(3.0), constant_tolerance);
+    for (std::size_t b = 0; b < 3; ++b)
+        EXPECT_NEAR(transfer_basis[b][2], 1 / std::sqrt(3.0), constant_tolerance);
 }
 
-TEST(TransferBasis, LastIsStraightDown) { EXPECT_EQ(transfer_basis[3], (Float3{0, 0, -1})); }
+TEST(TransferBasis, LastIsStraightDown) {
+    EXPECT_EQ(transfer_basis[3], (Float3{0, 0, -1}));
+}
 
 TEST(SphericalHarmonics, AreOrthonormalByIntegration) {
     for (std::size_t i = 0; i < sh_count; ++i) {
@@ -77,13 +84,20 @@ TEST(SphericalHarmonics, ConstantsAreTheRootsRounded) {
 
 // The share of the open sky in a direction's colour: DESIGN section 2 calls it o.
 TEST(SphericalHarmonics, OpenSkyShareOfUpwardBasisIsAsWritten) {
-    const double lobe = integrate_sphere([](const Float3& w) { return w[2] > 0 ? std::max(0.0, dot(w, transfer_basis[0])) : 0.0; });
+    const double lobe = integrate_sphere(
+        [](const Float3& w) { return w[2] > 0 ? std::max(0.0, dot(w, transfer_basis[0])) : 0.0; });
     EXPECT_NEAR(lobe / std::numbers::pi, 0.7887, 1e-4);
 }
 
 TEST(TransferBound, HoldsTheCodesOfThePassiveExtremes) {
-    EXPECT_LE(decode_fixed(encode_fixed(static_cast<float>(1 / (2 * std::sqrt(std::numbers::pi))), transfer_scale), transfer_scale), transfer_bound_y0);
-    EXPECT_LE(decode_fixed(encode_fixed(static_cast<float>(std::sqrt(3 / (4 * std::numbers::pi))), transfer_scale), transfer_scale), transfer_bound_y1);
+    EXPECT_LE(
+        decode_fixed(encode_fixed(static_cast<float>(1 / (2 * std::sqrt(std::numbers::pi))), transfer_scale),
+                     transfer_scale),
+        transfer_bound_y0);
+    EXPECT_LE(
+        decode_fixed(encode_fixed(static_cast<float>(std::sqrt(3 / (4 * std::numbers::pi))), transfer_scale),
+                     transfer_scale),
+        transfer_bound_y1);
 }
 
 TEST(FixedPoint, EveryCodeComesBack) {
@@ -99,7 +113,8 @@ TEST(FixedPoint, NearestCodeIsChosen) {
         const double step = static_cast<double>(scale) / 32767;
         for (int n = -100'000; n <= 100'000; ++n) {
             const float value = static_cast<float>(n) * 1.0001e-5f * scale;
-            if (std::abs(value) >= scale) continue;
+            if (std::abs(value) >= scale)
+                continue;
             const double exact = static_cast<double>(value) / step;
             ASSERT_LE(std::abs(exact - encode_fixed(value, scale)), 0.5) << value;
         }
@@ -109,7 +124,8 @@ TEST(FixedPoint, NearestCodeIsChosen) {
 TEST(FixedPoint, JustBelowHalfAStepIsZero) {
     // 32767 v < 1/2 by less than a float resolves: rounding in float would give 1.
     float value = 0.5f / 32767;
-    while (static_cast<double>(value) * 32767 >= 0.5) value = std::nextafter(value, 0.0f);
+    while (static_cast<double>(value) * 32767 >= 0.5)
+        value = std::nextafter(value, 0.0f);
     EXPECT_EQ(encode_fixed(value, 1), 0);
     EXPECT_EQ(encode_fixed(-value, 1), 0);
 }
@@ -154,12 +170,15 @@ TEST(FixedPoint, DecodesToTheNearestFloat) {
 }
 
 TEST(Scale, OfAnExponentIsAnExactPowerOfTwo) {
-    for (int e = -126; e <= 126; ++e) ASSERT_EQ(scale_of_exponent(e), std::ldexp(1.0f, e)) << e;
+    for (int e = -126; e <= 126; ++e)
+        ASSERT_EQ(scale_of_exponent(e), std::ldexp(1.0f, e)) << e;
 }
 
 TEST(Scale, OfAnExponentBeyondTheLimitIsThatOfTheLimit) {
-    for (int e : {127, 128, 254, INT_MAX}) EXPECT_EQ(scale_of_exponent(e), std::ldexp(1.0f, 126)) << e;
-    for (int e : {-127, -128, -256, INT_MIN}) EXPECT_EQ(scale_of_exponent(e), std::ldexp(1.0f, -126)) << e;
+    for (int e : {127, 128, 254, INT_MAX})
+        EXPECT_EQ(scale_of_exponent(e), std::ldexp(1.0f, 126)) << e;
+    for (int e : {-127, -128, -256, INT_MIN})
+        EXPECT_EQ(scale_of_exponent(e), std::ldexp(1.0f, -126)) << e;
 }
 
 TEST(Position, StandsInTheSectorInWholeUnits) {

@@ -58,19 +58,22 @@ TEST_P(DamagedSector, EverySingleBitFlipIsRejected) {
     EXPECT_TRUE(read_sector(flipped, sector).ok());
 }
 
-// Under right checksums the deeper rules are reached. What is accepted must be a sector that can be written and read.
+// Under right checksums the deeper rules are reached. What is accepted must be a sector that can be written
+// and read.
 TEST_P(DamagedSector, RandomDamageUnderRightChecksumsIsRejectedOrASector) {
     std::mt19937 random(3);
     std::vector<std::size_t> starts;
-    for (const auto& [kind, offset] : GetParam().telling) starts.push_back(section_start(file, kind) + offset);
+    for (const auto& [kind, offset] : GetParam().telling)
+        starts.push_back(section_start(file, kind) + offset);
     std::size_t accepted = 0, rejected = 0;
     for (int round = 0; round < 1500; ++round) {
         Edit edit(file);
         for (std::uint32_t n = 0; n <= random() % 3; ++n) {
             const std::size_t where = random() % 4;
-            const std::size_t offset = where == 0   ? random() % 256
-                                       : where == 1 ? std::min(starts[random() % starts.size()] + random() % 24, file.size() - 1)
-                                                    : random() % file.size();
+            const std::size_t offset =
+                where == 0   ? random() % 256
+                : where == 1 ? std::min(starts[random() % starts.size()] + random() % 24, file.size() - 1)
+                             : random() % file.size();
             constexpr std::array<std::uint8_t, 6> telling = {0, 1, 0x7F, 0x80, 0xFE, 0xFF};
             edit.u8(offset, random() % 2 == 0 ? telling[random() % telling.size()] : random() % 256);
         }
@@ -78,7 +81,8 @@ TEST_P(DamagedSector, RandomDamageUnderRightChecksumsIsRejectedOrASector) {
         Sector read;
         const ReadStatus status = read_sector(damaged, read);
         const auto findings = validate_sector(damaged).findings;
-        for (const Finding& finding : findings) ASSERT_LE(finding.offset, damaged.size());
+        for (const Finding& finding : findings)
+            ASSERT_LE(finding.offset, damaged.size());
         if (!status.ok()) {
             ASSERT_LE(status.offset, damaged.size());
             ASSERT_FALSE(findings.empty());
@@ -97,10 +101,12 @@ TEST_P(DamagedSector, RandomDamageUnderRightChecksumsIsRejectedOrASector) {
 
 const std::vector<std::pair<std::uint16_t, std::size_t>> required = {{1, 0}, {2, 0}, {5, 0}, {6, 0}};
 // Of local transfer: header, sources, receivers, masks.
-const std::vector<std::pair<std::uint16_t, std::size_t>> optional = {{2, 0}, {7, 64}, {8, 0}, {8, 16}, {8, 32}, {8, 64}, {8, 96}, {9, 0}};
+const std::vector<std::pair<std::uint16_t, std::size_t>> optional = {{2, 0},  {7, 64}, {8, 0},  {8, 16},
+                                                                     {8, 32}, {8, 64}, {8, 96}, {9, 0}};
 
 INSTANTIATE_TEST_SUITE_P(, DamagedSector,
-                         testing::Values(Kind{"raw", Codec::raw, golden_sector, required}, Kind{"zstd", Codec::zstd, golden_sector, required},
+                         testing::Values(Kind{"raw", Codec::raw, golden_sector, required},
+                                         Kind{"zstd", Codec::zstd, golden_sector, required},
                                          Kind{"raw_1_1", Codec::raw, golden_sector_1_1, optional},
                                          Kind{"zstd_1_1", Codec::zstd, golden_sector_1_1, optional}),
                          [](const auto& kind) { return kind.param.name; });

@@ -13,7 +13,9 @@
 namespace drtv::test {
 namespace {
 
-Bytes local_section(const Sector& sector) { return stored_of(write_sector(sector), 8); }
+Bytes local_section(const Sector& sector) {
+    return stored_of(write_sector(sector), 8);
+}
 
 Bytes back(const Bytes& filtered, std::size_t probes, std::size_t raw_bytes) {
     Bytes raw;
@@ -36,7 +38,9 @@ TEST(LocalFilter, GivesBackCodesOfAnyKind) {
     for (LightCodes& pair : sector.local_transfer->pairs) {
         const unsigned shift = random() % 16;
         for (auto& channel : pair) {
-            for (std::int16_t& q : channel) q = random() % 2 == 0 ? telling[random() % telling.size()] : static_cast<std::int16_t>(static_cast<unsigned>(random()) << shift);
+            for (std::int16_t& q : channel)
+                q = random() % 2 == 0 ? telling[random() % telling.size()]
+                                      : static_cast<std::int16_t>(static_cast<unsigned>(random()) << shift);
         }
     }
     const Bytes raw = local_section(sector);
@@ -50,7 +54,10 @@ TEST(LocalFilter, PutsBytesWhereThePageSays) {
     local.sources = {{0, 0, 0, 0}, {0, 0, 1, 0}};
     local.receivers.resize(2);
     // Shift 4: green (100, -20, 30, 40), red (52, -10, 15, 21), blue (90, 0, 0, 0). The largest has 7 bits.
-    add_pairs(local, 0, {1}, {{{52 * 16, -10 * 16, 15 * 16, 21 * 16}, {100 * 16, -20 * 16, 30 * 16, 40 * 16}, {90 * 16, 0, 0, 0}}});
+    add_pairs(local, 0, {1},
+              {{{52 * 16, -10 * 16, 15 * 16, 21 * 16},
+                {100 * 16, -20 * 16, 30 * 16, 40 * 16},
+                {90 * 16, 0, 0, 0}}});
     // Shift 0, 9 bits. The sums are now green 1 - 0 + 100 = 101, red 53, blue 91.
     add_pairs(local, 1, {0}, {{{160, 0, 0, 0}, {300, 0, 1, 0}, {270, 0, 0, 0}}});
     const Bytes raw = local_section(sector), filtered = filter_local(raw, 2);
@@ -59,25 +66,32 @@ TEST(LocalFilter, PutsBytesWhereThePageSays) {
     EXPECT_TRUE(std::equal(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(codes), filtered.begin()));
     const std::uint8_t* at = filtered.data() + codes;
     EXPECT_EQ(Bytes(at, at + 4), (Bytes{4, 0, 7, 9}));
-    const auto zigzag = [](int value) { return static_cast<std::uint16_t>(value < 0 ? -2 * value - 1 : 2 * value); };
-    // Red is foretold from 1 : 1 sums as 100, its band 1 as round(-20 * 52 / 100) = -10, 16, 21; blue as 100, then -18, 27, 36.
+    const auto zigzag = [](int value) {
+        return static_cast<std::uint16_t>(value < 0 ? -2 * value - 1 : 2 * value);
+    };
+    // Red is foretold from 1 : 1 sums as 100, its band 1 as round(-20 * 52 / 100) = -10, 16, 21; blue as 100,
+    // then -18, 27, 36.
     const std::array<int, 12> first = {100, -20, 30, 40, 52 - 100, 0, -1, 0, 90 - 100, 18, -27, -36};
-    // (300 * 53 + 50) / 101 = 157; blue (300 * 91 + 50) / 101 = 270. Band 1 of red: 1 * 160 / 300 rounds to 1.
+    // (300 * 53 + 50) / 101 = 157; blue (300 * 91 + 50) / 101 = 270. Band 1 of red: 1 * 160 / 300 rounds
+    // to 1.
     const std::array<int, 12> second = {300, 0, 1, 0, 160 - 157, 0, -1, 0, 270 - 270, 0, -1, 0};
     // Groups by class + bits off, then class, then number: of the pair of 7 bits (a) and that of 9 bits (b).
     constexpr std::array<int, 12> off = {1, -1, -1, -1, -2, -4, -4, -4, -2, -4, -4, -4};
     std::vector<int> expected;
     for (int bits = -4; bits <= 17; ++bits) {
         for (std::size_t k = 0; k < 12; ++k) {
-            if (7 + off[k] == bits) expected.push_back(first[k]);
+            if (7 + off[k] == bits)
+                expected.push_back(first[k]);
         }
         for (std::size_t k = 0; k < 12; ++k) {
-            if (9 + off[k] == bits) expected.push_back(second[k]);
+            if (9 + off[k] == bits)
+                expected.push_back(second[k]);
         }
     }
     ASSERT_EQ(expected.size(), 24u);
     const std::uint8_t *high = at + 4, *low = high + 24;
-    for (std::size_t n = 0; n < 24; ++n) EXPECT_EQ(high[n] << 8 | low[n], zigzag(expected[n])) << n;
+    for (std::size_t n = 0; n < 24; ++n)
+        EXPECT_EQ(high[n] << 8 | low[n], zigzag(expected[n])) << n;
 }
 
 // Sums at their largest: what is foretold of red leaves 31 bits.
@@ -87,7 +101,11 @@ TEST(LocalFilter, LargestForetoldNumbersWrapAsThePageSays) {
     local.sources = neighbouring_sources(5);
     local.receivers.resize(2);
     // s_r: 1, 32768, 57343, then 65538; s_g stays 1. Then 32767 * 65538 is foretold, and -32768 is there.
-    for (const auto& [s, red, green] : {std::tuple<std::size_t, std::int16_t, std::int16_t>{0, 32767, -1}, {1, 32767, 0}, {2, 22530, -5}, {3, INT16_MIN, 32767}, {4, 32767, 1}}) {
+    for (const auto& [s, red, green] : {std::tuple<std::size_t, std::int16_t, std::int16_t>{0, 32767, -1},
+                                        {1, 32767, 0},
+                                        {2, 22530, -5},
+                                        {3, INT16_MIN, 32767},
+                                        {4, 32767, 1}}) {
         add_pairs(local, 0, {s}, {{{red, 1, 0, 0}, {green, 0, 0, 3}, {0, 0, 0, 0}}});
     }
     const Bytes raw = local_section(sector);
@@ -101,7 +119,8 @@ TEST(LocalFilter, AnyBytesOfTheRightSizeGiveASectionOrNothing) {
     std::size_t sections = 0;
     for (int round = 0; round < 3000; ++round) {
         Bytes damaged = filtered;
-        for (int n = 0; n < 3; ++n) damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
+        for (int n = 0; n < 3; ++n)
+            damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
         Bytes out;
         sections += unfilter_local(damaged, 9, raw.size(), out) ? 1u : 0u;
         ASSERT_TRUE(out.empty() || out.size() == raw.size());

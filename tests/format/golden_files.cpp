@@ -33,11 +33,15 @@ Sector sector_of_any_codes() {
         sector.probes[p].position[0] = static_cast<std::uint16_t>(6000 * p);
         for (std::size_t s = 0; s < local.sources.size(); ++s) {
             LightCodes codes{};
-            const std::uint32_t mask = (2u << random() % 15) - 1, shift = random() % 4 == 0 ? static_cast<std::uint32_t>(random() % 8) : 0;
+            const std::uint32_t mask = (2u << random() % 15) - 1,
+                                shift = random() % 4 == 0 ? static_cast<std::uint32_t>(random() % 8) : 0;
             for (auto& channel : codes) {
                 for (std::int16_t& q : channel) {
-                    const auto number = static_cast<std::int16_t>((static_cast<std::uint32_t>(random()) & mask) << shift);
-                    q = random() % 16 == 0 ? telling[random() % telling.size()] : random() % 3 == 0 ? static_cast<std::int16_t>(-number) : number;
+                    const auto number =
+                        static_cast<std::int16_t>((static_cast<std::uint32_t>(random()) & mask) << shift);
+                    q = random() % 16 == 0  ? telling[random() % telling.size()]
+                        : random() % 3 == 0 ? static_cast<std::int16_t>(-number)
+                                            : number;
                 }
             }
             add_pairs(local, p, {s}, codes);

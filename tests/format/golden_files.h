@@ -1,5 +1,5 @@
-// The frozen files of tests/data/golden: one a version of the format, one a kind of optional section, raw and compressed. A file that
-// stands there is never written again; `write_golden` adds those that are new.
+// The frozen files of tests/data/golden: one a version of the format, one a kind of optional section, raw and
+// compressed. A file that stands there is never written again; `write_golden` adds those that are new.
 #pragma once
 
 #include <drtv/write.h>

@@ -17,7 +17,9 @@ namespace {
 
 const std::string golden_folder = DRTV_SOURCE_DIR "/tests/data/golden/";
 
-Bytes bytes_of(const GoldenFile& golden) { return read_test_file(golden_folder + golden.name + ".drtv"); }
+Bytes bytes_of(const GoldenFile& golden) {
+    return read_test_file(golden_folder + golden.name + ".drtv");
+}
 
 TEST(GoldenFile, ReaderGivesTheSameNumbers) {
     for (const GoldenFile& golden : golden_files()) {
@@ -28,17 +30,20 @@ TEST(GoldenFile, ReaderGivesTheSameNumbers) {
     }
 }
 
-// The bytes of a zstd frame differ from one version of zstd to the next: only the reader is held to those files.
+// The bytes of a zstd frame differ from one version of zstd to the next: only the reader is held to those
+// files.
 TEST(GoldenFile, WriterGivesTheSameBytes) {
     for (const GoldenFile& golden : golden_files()) {
         if (golden.codec == Codec::raw) {
-            EXPECT_EQ(write_sector(golden.sector), bytes_of(golden)) << golden.name << ": a change of bytes needs another version of the format";
+            EXPECT_EQ(write_sector(golden.sector), bytes_of(golden))
+                << golden.name << ": a change of bytes needs another version of the format";
         }
     }
 }
 
 TEST(GoldenFile, IsValid) {
-    for (const GoldenFile& golden : golden_files()) EXPECT_EQ(validate_sector(bytes_of(golden)).findings.empty(), golden.valid) << golden.name;
+    for (const GoldenFile& golden : golden_files())
+        EXPECT_EQ(validate_sector(bytes_of(golden)).findings.empty(), golden.valid) << golden.name;
 }
 
 TEST(GoldenFile, IsThereForEachVersionAndEachKind) {
@@ -55,7 +60,8 @@ TEST(GoldenFile, IsThereForEachVersionAndEachKind) {
     EXPECT_EQ(minors, (std::set<std::uint16_t>{0, 1, 2}));
     EXPECT_EQ(codecs, (std::set<std::uint16_t>{0, 1, 2}));
     EXPECT_EQ(kinds.size(), 10u);
-    EXPECT_EQ(name_of_section(static_cast<std::uint16_t>(kinds.size() + 1)), "unknown") << "a new kind needs a golden file";
+    EXPECT_EQ(name_of_section(static_cast<std::uint16_t>(kinds.size() + 1)), "unknown")
+        << "a new kind needs a golden file";
 }
 
 // Every byte is covered: by a checksum, or by the rule that padding is 0.
@@ -66,7 +72,8 @@ TEST(GoldenFile, EveryFlippedBitIsReported) {
         for (std::size_t bit = 0; bit < 8 * flipped.size(); ++bit) {
             const auto mask = static_cast<std::uint8_t>(1u << (bit % 8));
             flipped[bit / 8] ^= mask;
-            ASSERT_FALSE(validate_sector(flipped).valid()) << name << ": byte " << bit / 8 << " bit " << bit % 8;
+            ASSERT_FALSE(validate_sector(flipped).valid())
+                << name << ": byte " << bit / 8 << " bit " << bit % 8;
             flipped[bit / 8] ^= mask;
         }
     }
@@ -84,23 +91,28 @@ Bytes bytes_of_listing(std::istream& listing) {
         std::istringstream words(line.substr(0, line.find('|')));
         std::size_t offset = 0;
         words >> std::hex >> offset;
-        while (repeat && bytes.size() < offset) bytes.insert(bytes.end(), last.begin(), last.end());
+        while (repeat && bytes.size() < offset)
+            bytes.insert(bytes.end(), last.begin(), last.end());
         repeat = false;
         EXPECT_EQ(bytes.size(), offset) << line;
         last.clear();
-        for (unsigned byte = 0; words >> byte;) last.push_back(static_cast<std::uint8_t>(byte));
+        for (unsigned byte = 0; words >> byte;)
+            last.push_back(static_cast<std::uint8_t>(byte));
         bytes.insert(bytes.end(), last.begin(), last.end());
     }
     return bytes;
 }
 
-// The file of version 1.0, the local transfer section of that of version 1.1, the interiors of that of version 1.2.
+// The file of version 1.0, the local transfer section of that of version 1.1, the interiors of that of
+// version 1.2.
 TEST(Specification, ExamplesAreTheGoldenFiles) {
-    const std::vector<Bytes> expected = {golden_bytes(), stored_of(golden_bytes_1_1(), 8), stored_of(golden_bytes_1_2(), 10)};
+    const std::vector<Bytes> expected = {golden_bytes(), stored_of(golden_bytes_1_1(), 8),
+                                         stored_of(golden_bytes_1_2(), 10)};
     std::size_t listings = 0;
     std::ifstream page(DRTV_SOURCE_DIR "/format/SPEC.md");
     for (std::string line; std::getline(page, line);) {
-        if (line != "```hexdump") continue;
+        if (line != "```hexdump")
+            continue;
         ASSERT_LT(listings, expected.size());
         EXPECT_EQ(bytes_of_listing(page), expected[listings++]);
     }

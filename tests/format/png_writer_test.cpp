@@ -24,7 +24,8 @@ Image paint(std::size_t width, std::size_t height, const Colour& colour) {
     Image image(width, height);
     for (std::size_t y = 0; y < height; ++y) {
         for (std::size_t x = 0; x < width; ++x) {
-            for (std::size_t c = 0; c < 3; ++c) image.at(x, y)[c] = colour(x, y, c);
+            for (std::size_t c = 0; c < 3; ++c)
+                image.at(x, y)[c] = colour(x, y, c);
         }
     }
     return image;
@@ -34,13 +35,16 @@ Image paint(std::size_t width, std::size_t height, const Colour& colour) {
 std::size_t expect_read_back(const Image& image) {
     const std::vector<std::uint8_t> png = encode_png(image);
     int width = 0, height = 0, channels = 0;
-    stbi_uc* pixels = stbi_load_from_memory(png.data(), static_cast<int>(png.size()), &width, &height, &channels, 0);
+    stbi_uc* pixels =
+        stbi_load_from_memory(png.data(), static_cast<int>(png.size()), &width, &height, &channels, 0);
     EXPECT_NE(pixels, nullptr) << stbi_failure_reason();
-    if (pixels == nullptr) return 0;
+    if (pixels == nullptr)
+        return 0;
     EXPECT_EQ(static_cast<std::size_t>(width), image.width);
     EXPECT_EQ(static_cast<std::size_t>(height), image.height);
     EXPECT_EQ(channels, 3);
-    EXPECT_EQ(std::memcmp(pixels, image.rgb.data(), image.rgb.size()), 0) << image.width << " x " << image.height;
+    EXPECT_EQ(std::memcmp(pixels, image.rgb.data(), image.rgb.size()), 0)
+        << image.width << " x " << image.height;
     stbi_image_free(pixels);
     return png.size();
 }
@@ -48,7 +52,9 @@ std::size_t expect_read_back(const Image& image) {
 TEST(PngWriter, RandomPixelsAreReadBack) {
     std::mt19937 random(1);
     for (std::size_t width : {1u, 2u, 3u, 5u, 64u, 117u}) {
-        for (std::size_t height : {1u, 2u, 7u, 90u}) expect_read_back(paint(width, height, [&](auto...) { return static_cast<std::uint8_t>(random()); }));
+        for (std::size_t height : {1u, 2u, 7u, 90u})
+            expect_read_back(
+                paint(width, height, [&](auto...) { return static_cast<std::uint8_t>(random()); }));
     }
 }
 
@@ -56,11 +62,15 @@ TEST(PngWriter, FewColoursAreReadBack) {
     // Many short matches at many distances.
     std::mt19937 random(2);
     expect_read_back(paint(300, 200, [&](auto...) { return static_cast<std::uint8_t>(random() % 2); }));
-    expect_read_back(paint(300, 200, [&](std::size_t x, std::size_t, std::size_t) { return static_cast<std::uint8_t>(x % 7 == 0 ? random() % 3 : 0); }));
+    expect_read_back(paint(300, 200, [&](std::size_t x, std::size_t, std::size_t) {
+        return static_cast<std::uint8_t>(x % 7 == 0 ? random() % 3 : 0);
+    }));
 }
 
 TEST(PngWriter, SmoothPictureIsReadBackAndSmall) {
-    const Image image = paint(640, 400, [](std::size_t x, std::size_t y, std::size_t c) { return static_cast<std::uint8_t>(x / 4 + y / 8 + 20 * c); });
+    const Image image = paint(640, 400, [](std::size_t x, std::size_t y, std::size_t c) {
+        return static_cast<std::uint8_t>(x / 4 + y / 8 + 20 * c);
+    });
     EXPECT_LT(expect_read_back(image), image.rgb.size() / 20);
 }
 
@@ -71,14 +81,19 @@ TEST(PngWriter, OneColourIsReadBackAndSmall) {
 }
 
 TEST(PngWriter, RepeatsAroundTheWindowAreReadBack) {
-    // Rows of random bytes that come again after 32768 bytes less, exactly, and more: 3 width + 1 bytes a row.
+    // Rows of random bytes that come again after 32768 bytes less, exactly, and more: 3 width + 1 bytes a
+    // row.
     std::mt19937 random(4);
     for (std::size_t width : {10922u, 10923u, 5461u, 16383u}) {
         std::vector<std::uint8_t> row(3 * width);
-        for (std::uint8_t& byte : row) byte = static_cast<std::uint8_t>(random());
-        expect_read_back(paint(width, 4, [&](std::size_t x, std::size_t, std::size_t c) { return row[3 * x + c]; }));
+        for (std::uint8_t& byte : row)
+            byte = static_cast<std::uint8_t>(random());
+        expect_read_back(
+            paint(width, 4, [&](std::size_t x, std::size_t, std::size_t c) { return row[3 * x + c]; }));
         // Within a row too: 3 width bytes apart, of which 3 * 10923 is the first that is too far.
-        expect_read_back(paint(2 * width, 1, [&](std::size_t x, std::size_t, std::size_t c) { return row[3 * (x % width) + c]; }));
+        expect_read_back(paint(2 * width, 1, [&](std::size_t x, std::size_t, std::size_t c) {
+            return row[3 * (x % width) + c];
+        }));
     }
 }
 
@@ -91,7 +106,8 @@ TEST(PngWriter, EveryMatchLengthIsReadBack) {
         bytes.insert(bytes.end(), 3 * run, bytes.back());
     }
     const std::size_t width = bytes.size() / 3;
-    expect_read_back(paint(width, 1, [&](std::size_t x, std::size_t, std::size_t c) { return bytes[3 * x + c]; }));
+    expect_read_back(
+        paint(width, 1, [&](std::size_t x, std::size_t, std::size_t c) { return bytes[3 * x + c]; }));
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ class Preview(Tool):
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
         at, chunks = 8, []
         while at < len(data):
-            size, = struct.unpack_from(">I", data, at)
-            body = data[at + 4:at + 8 + size]
+            (size,) = struct.unpack_from(">I", data, at)
+            body = data[at + 4 : at + 8 + size]
             self.assertEqual(struct.unpack_from(">I", data, at + 8 + size)[0], zlib.crc32(body))
             chunks.append((body[:4], body[4:]))
             at += 12 + size
@@ -32,7 +32,17 @@ class Preview(Tool):
         self.write("sectors/one.drtv", golden())
         for quantity in ("relit", "sky"):
             out = self.path(quantity + ".png")
-            stdout = self.expect(0, "preview", self.path("sectors"), "--out", out, "--metres-per-pixel", "0.5", "--quantity", quantity)
+            stdout = self.expect(
+                0,
+                "preview",
+                self.path("sectors"),
+                "--out",
+                out,
+                "--metres-per-pixel",
+                "0.5",
+                "--quantity",
+                quantity,
+            )
             self.assertIn("128 x 128 pixels, 1 sectors, 2 probes", stdout)
             width, height, rows = self.read_png(out)
             self.assertEqual((width, height), (128, 128))
@@ -42,15 +52,30 @@ class Preview(Tool):
     def middle_pixel(self, data, x_m, y_m, quantity):
         """The pixel at (x_m, y_m) in the golden sector, whose north-western corner is (-64, 192)."""
         out = self.path("pixel.png")
-        self.expect(0, "preview", self.write("pixel.drtv", data), "--out", out, "--metres-per-pixel", "0.5", "--quantity", quantity)
+        self.expect(
+            0,
+            "preview",
+            self.write("pixel.drtv", data),
+            "--out",
+            out,
+            "--metres-per-pixel",
+            "0.5",
+            "--quantity",
+            quantity,
+        )
         width, _, rows = self.read_png(out)
         stride, x = 3 * width + 1, int((x_m + 64) * 2)
-        row = rows[int((192 - y_m) * 2) * stride:][:stride]
+        row = rows[int((192 - y_m) * 2) * stride :][:stride]
         self.assertEqual(row[0], 1)  # each pixel is stored as its difference to the one before
-        return tuple(sum(row[1 + c:1 + 3 * (x + 1):3]) % 256 for c in range(3))
+        return tuple(sum(row[1 + c : 1 + 3 * (x + 1) : 3]) % 256 for c in range(3))
 
     def test_back_hits_colour_a_sector_green_to_red(self):
-        for back_hits, colour in ((0, (0, 255, 0)), (25, (255, 255, 0)), (50, (255, 0, 0)), (1000, (255, 0, 0))):
+        for back_hits, colour in (
+            (0, (0, 255, 0)),
+            (25, (255, 255, 0)),
+            (50, (255, 0, 0)),
+            (1000, (255, 0, 0)),
+        ):
             data = golden()
             struct.pack_into("<QQ", data, 4640 + 24, 1000, back_hits)
             self.assertEqual(self.middle_pixel(seal(data), -48, 160, "back_hits"), colour, back_hits)
@@ -65,15 +90,28 @@ class Preview(Tool):
 
     def test_relit_shows_static_irradiance(self):
         # The map's own light at probe 0 is red.
-        with_light, without = self.middle_pixel(golden(GOLDEN_1_1), -48, 160, "relit"), self.middle_pixel(golden(), -48, 160, "relit")
+        with_light, without = self.middle_pixel(golden(GOLDEN_1_1), -48, 160, "relit"), self.middle_pixel(
+            golden(), -48, 160, "relit"
+        )
         self.assertGreater(with_light[0], without[0])
         self.assertEqual(with_light[2], without[2])
 
     def test_place_that_cannot_be_written_exits_2_and_leaves_nothing(self):
         out = self.path("no such folder/a.png")
-        self.expect(UNREADABLE, "preview", GOLDEN, "--out", out, "--metres-per-pixel", "1", err="cannot write " + out)
+        self.expect(
+            UNREADABLE, "preview", GOLDEN, "--out", out, "--metres-per-pixel", "1", err="cannot write " + out
+        )
         os.mkdir(self.path("folder.png"))
-        self.expect(UNREADABLE, "preview", GOLDEN, "--out", self.path("folder.png"), "--metres-per-pixel", "1", err="cannot write")
+        self.expect(
+            UNREADABLE,
+            "preview",
+            GOLDEN,
+            "--out",
+            self.path("folder.png"),
+            "--metres-per-pixel",
+            "1",
+            err="cannot write",
+        )
         self.assertEqual(os.listdir(self.folder), ["folder.png"])
 
 

@@ -1,4 +1,5 @@
-// Sectors beside each other: a broken region for each issue of the groups borders and set, with the whole report that it must give.
+// Sectors beside each other: a broken region for each issue of the groups borders and set, with the whole
+// report that it must give.
 #include "tests/format/sector_bytes.h"
 #include "tests/format/sectors.h"
 
@@ -14,7 +15,8 @@
 namespace drtv::test {
 namespace {
 
-// A sector of the plain: 4 x 4 probes 16 m apart on a floor of albedo 1/2, each a little brighter than the one to its west.
+// A sector of the plain: 4 x 4 probes 16 m apart on a floor of albedo 1/2, each a little brighter than the
+// one to its west.
 Sector plain(std::int32_t i, std::int32_t j) {
     Sector sector = golden_sector();
     const Probe floor = sector.probes[0];
@@ -24,8 +26,10 @@ Sector plain(std::int32_t i, std::int32_t j) {
     for (std::uint16_t y = 0; y < 4; ++y) {
         for (std::uint16_t x = 0; x < 4; ++x) {
             Probe probe = floor;
-            probe.position = {static_cast<std::uint16_t>(8192 + 16384 * x), static_cast<std::uint16_t>(8192 + 16384 * y), 1024};
-            for (auto& channel : probe.transfer) channel[3][0] = static_cast<std::int16_t>(channel[3][0] + 250 * x);
+            probe.position = {static_cast<std::uint16_t>(8192 + 16384 * x),
+                              static_cast<std::uint16_t>(8192 + 16384 * y), 1024};
+            for (auto& channel : probe.transfer)
+                channel[3][0] = static_cast<std::int16_t>(channel[3][0] + 250 * x);
             sector.probes.push_back(probe);
         }
     }
@@ -38,7 +42,8 @@ using Change = std::function<void(std::vector<Sector>&)>;
 std::vector<Sector> square(std::int32_t side) {
     std::vector<Sector> sectors;
     for (std::int32_t j = 0; j < side; ++j) {
-        for (std::int32_t i = 0; i < side; ++i) sectors.push_back(plain(i, j));
+        for (std::int32_t i = 0; i < side; ++i)
+            sectors.push_back(plain(i, j));
     }
     return sectors;
 }
@@ -53,14 +58,17 @@ LocalTransfer light_from(std::int8_t di, std::uint8_t probe) {
 std::string report_of(const std::vector<Sector>& sectors, bool name_them = false) {
     std::vector<RegionSector> region(sectors.size());
     for (std::size_t n = 0; n < sectors.size(); ++n) {
-        if (name_them) region[n].named = {{static_cast<std::int32_t>(n % 3), static_cast<std::int32_t>(n / 3)}};
+        if (name_them)
+            region[n].named = {{static_cast<std::int32_t>(n % 3), static_cast<std::int32_t>(n / 3)}};
         const ReadStatus status = read_region_sector(write_sector(sectors[n]), region[n]);
         EXPECT_TRUE(status.ok()) << status.message;
     }
     std::string report;
     for (const auto& [sector, finding] : validate_region(region)) {
-        if (!report.empty()) report += '\n';
-        report += std::to_string(sector) + ": " + std::string(finding.issue->code) + " at " + std::to_string(finding.offset) + ", " + finding.path + ": " + finding.message;
+        if (!report.empty())
+            report += '\n';
+        report += std::to_string(sector) + ": " + std::string(finding.issue->code) + " at " +
+                  std::to_string(finding.offset) + ", " + finding.path + ": " + finding.message;
     }
     return report;
 }
@@ -72,27 +80,44 @@ struct Case {
 };
 
 const std::vector<Case> cases = {
-    {"SectorTwice", [](auto& s) { s.push_back(plain(1, 1)); }, "9: SET_DUPLICATE at 16, : sector (1, 1) is in another file of the set too"},
+    {"SectorTwice", [](auto& s) { s.push_back(plain(1, 1)); },
+     "9: SET_DUPLICATE at 16, : sector (1, 1) is in another file of the set too"},
     {"OtherSettings", [](auto& s) { s[4].bake.settings_key[0] = 9; },
      "4: SET_SETTINGS at 0, settings.key: was baked with other settings than 8 of the 9 sectors"},
-    {"Hole", [](auto& s) { s.erase(s.begin() + 4); }, "3: SET_HOLE at 16, : sector (1, 1) to its east is missing, and sectors are all around"},
-    {"SourceThatIsNotThere", [](auto& s) { for (Sector& sector : s) sector.local_transfer = light_from(0, 1); s[0].local_transfer = light_from(1, 16); },
+    {"Hole", [](auto& s) { s.erase(s.begin() + 4); },
+     "3: SET_HOLE at 16, : sector (1, 1) to its east is missing, and sectors are all around"},
+    {"SourceThatIsNotThere",
+     [](auto& s) {
+         for (Sector& sector : s)
+             sector.local_transfer = light_from(0, 1);
+         s[0].local_transfer = light_from(1, 16);
+     },
      "0: NEIGHBOUR_SOURCE at 6308, local_transfer.sources[1]: is probe 16 of sector (1, 0), which has 16"},
     {"ProbesTooNearAcrossTheBorder",
      [](auto& s) {
          s[0].probes[3].position[0] = 63 * 1024;
          s[1].probes[0].position[0] = 2 * 1024;
-         for (Sector& sector : s) fill_grid(sector, [](std::size_t) { return std::size_t{0}; });
+         for (Sector& sector : s)
+             fill_grid(sector, [](std::size_t) { return std::size_t{0}; });
      },
-     "0: NEIGHBOUR_DISTANCE at 0, probe[3].position: stands 3.000000 m from probe 0 of sector (1, 0), and the minimal distance is 6.000000 m"},
-    {"LocalTransferOnOneSide", [](auto& s) { for (std::size_t n = 0; n < 8; ++n) s[n].local_transfer = light_from(0, 1); },
-     "8: NEIGHBOUR_SECTIONS at 0, : has no local transfer, and its neighbour (1, 2) has\n8: NEIGHBOUR_SECTIONS at 0, : has no local transfer, and its neighbour (2, 1) has"},
+     "0: NEIGHBOUR_DISTANCE at 0, probe[3].position: stands 3.000000 m from probe 0 of sector (1, 0), and "
+     "the minimal distance is 6.000000 m"},
+    {"LocalTransferOnOneSide",
+     [](auto& s) {
+         for (std::size_t n = 0; n < 8; ++n)
+             s[n].local_transfer = light_from(0, 1);
+     },
+     "8: NEIGHBOUR_SECTIONS at 0, : has no local transfer, and its neighbour (1, 2) has\n8: "
+     "NEIGHBOUR_SECTIONS at 0, : has no local transfer, and its neighbour (2, 1) has"},
     {"DarkSector",
      [](auto& s) {
-         for (Probe& probe : s[0].probes) probe.sky_visibility = {3277, 3277, 3277, 0};
+         for (Probe& probe : s[0].probes)
+             probe.sky_visibility = {3277, 3277, 3277, 0};
      },
-     "0: NEIGHBOUR_STEP at 0, : towards sector (1, 0) light steps by 0.615040 on average, inside the two by 0.006762\n"
-     "0: NEIGHBOUR_STEP at 0, : towards sector (0, 1) light steps by 0.614705 on average, inside the two by 0.000000"},
+     "0: NEIGHBOUR_STEP at 0, : towards sector (1, 0) light steps by 0.615040 on average, inside the two by "
+     "0.006762\n"
+     "0: NEIGHBOUR_STEP at 0, : towards sector (0, 1) light steps by 0.614705 on average, inside the two by "
+     "0.000000"},
 };
 
 class RegionValidator : public testing::TestWithParam<Case> {};
@@ -103,27 +128,37 @@ TEST_P(RegionValidator, IsReported) {
     EXPECT_EQ(report_of(sectors), GetParam().report);
 }
 
-INSTANTIATE_TEST_SUITE_P(, RegionValidator, testing::ValuesIn(cases), [](const auto& c) { return c.param.name; });
+INSTANTIATE_TEST_SUITE_P(, RegionValidator, testing::ValuesIn(cases),
+                         [](const auto& c) { return c.param.name; });
 
 TEST(RegionIssues, EachHasACase) {
     for (const Issue* issue : all_issues()) {
-        if (issue->group != IssueGroup::borders && issue->group != IssueGroup::set) continue;
-        if (issue == &issue::set_file_name) continue;  // FileNames below
+        if (issue->group != IssueGroup::borders && issue->group != IssueGroup::set)
+            continue;
+        if (issue == &issue::set_file_name)
+            continue;  // FileNames below
         const std::string code = ": " + std::string(issue->code) + " at ";
-        EXPECT_TRUE(std::ranges::any_of(cases, [&](const Case& c) { return c.report.find(code) != std::string::npos; })) << issue->code;
+        EXPECT_TRUE(std::ranges::any_of(cases, [&](const Case& c) {
+            return c.report.find(code) != std::string::npos;
+        })) << issue->code;
     }
 }
 
-TEST(Region, ThatFitsGivesNoFinding) { EXPECT_EQ(report_of(square(3)), ""); }
+TEST(Region, ThatFitsGivesNoFinding) {
+    EXPECT_EQ(report_of(square(3)), "");
+}
 
-TEST(Region, OfNothingGivesNoFinding) { EXPECT_TRUE(validate_region({}).empty()); }
+TEST(Region, OfNothingGivesNoFinding) {
+    EXPECT_TRUE(validate_region({}).empty());
+}
 
 TEST(Region, FileNamesMustTellTheirSector) {
     EXPECT_EQ(report_of(square(3), true), "");
     std::vector<Sector> sectors = square(3);
     std::swap(sectors[0], sectors[8]);
-    EXPECT_EQ(report_of(sectors, true), "0: SET_FILE_NAME at 16, : the file is named for sector (0, 0) and holds sector (2, 2)\n"
-                                        "8: SET_FILE_NAME at 16, : the file is named for sector (2, 2) and holds sector (0, 0)");
+    EXPECT_EQ(report_of(sectors, true),
+              "0: SET_FILE_NAME at 16, : the file is named for sector (0, 0) and holds sector (2, 2)\n"
+              "8: SET_FILE_NAME at 16, : the file is named for sector (2, 2) and holds sector (0, 0)");
 }
 
 TEST(Region, BaysAreNoHoles) {
@@ -138,7 +173,8 @@ TEST(Region, UnreadableSectorIsNoHole) {
     std::vector<Sector> sectors = square(3);
     sectors.erase(sectors.begin() + 4);
     std::vector<RegionSector> region(sectors.size());
-    for (std::size_t n = 0; n < sectors.size(); ++n) ASSERT_TRUE(read_region_sector(write_sector(sectors[n]), region[n]).ok());
+    for (std::size_t n = 0; n < sectors.size(); ++n)
+        ASSERT_TRUE(read_region_sector(write_sector(sectors[n]), region[n]).ok());
     EXPECT_EQ(validate_region(region).size(), 1u);
     const std::array<std::array<std::int32_t, 2>, 1> unreadable = {{{1, 1}}};
     EXPECT_TRUE(validate_region(region, unreadable).empty());
@@ -147,16 +183,21 @@ TEST(Region, UnreadableSectorIsNoHole) {
 TEST(Region, HoleOfTwoIsOneFinding) {
     std::vector<Sector> sectors = square(4);
     std::erase_if(sectors, [](const Sector& s) { return s.j == 1 && (s.i == 1 || s.i == 2); });
-    EXPECT_EQ(report_of(sectors), "4: SET_HOLE at 16, : sector (1, 1) to its east is missing with 1 more beside it, and sectors are all around");
+    EXPECT_EQ(report_of(sectors),
+              "4: SET_HOLE at 16, : sector (1, 1) to its east is missing with 1 more beside it, and sectors "
+              "are all around");
 }
 
 // Sectors may lie anywhere, as far apart as coordinates go; what lies between them is not walked.
 TEST(Region, FarApartSectorsAreNoHoles) {
-    EXPECT_EQ(report_of({plain(-16384, -16384), plain(16384, 16384), plain(-16384, 16384), plain(16384, -16384), plain(0, 0)}), "");
+    EXPECT_EQ(report_of({plain(-16384, -16384), plain(16384, 16384), plain(-16384, 16384),
+                         plain(16384, -16384), plain(0, 0)}),
+              "");
 }
 
 TEST(Region, HolesInScatteredIslandsAreFoundAtOnce) {
-    // 100 rings of 8 sectors, far apart and without an order, each around a hole; one of them in the lake of a larger ring.
+    // 100 rings of 8 sectors, far apart and without an order, each around a hole; one of them in the lake of
+    // a larger ring.
     std::vector<RegionSector> region;
     const RegionSector one = [] {
         RegionSector sector;
@@ -171,11 +212,13 @@ TEST(Region, HolesInScatteredIslandsAreFoundAtOnce) {
     const auto put_ring = [&](std::int32_t i, std::int32_t j, std::int32_t radius) {
         for (std::int32_t y = -radius; y <= radius; ++y) {
             for (std::int32_t x = -radius; x <= radius; ++x) {
-                if (std::max(std::abs(x), std::abs(y)) == radius) put(i + x, j + y);
+                if (std::max(std::abs(x), std::abs(y)) == radius)
+                    put(i + x, j + y);
             }
         }
     };
-    for (std::int32_t n = 0; n < 100; ++n) put_ring(n * 7919 % 16000, n * 104729 % 16000, 1);
+    for (std::int32_t n = 0; n < 100; ++n)
+        put_ring(n * 7919 % 16000, n * 104729 % 16000, 1);
     put_ring(-5000, -5000, 1);
     put_ring(-5000, -5000, 4);
     std::size_t holes = 0, missing = 0;
@@ -194,7 +237,8 @@ TEST(Region, ManualProbesMayStandNear) {
     sectors[0].probes[3].position[0] = 63 * 1024;
     sectors[0].probes[3].kind = ProbeKind::manual;
     sectors[1].probes[0].position[0] = 2 * 1024;
-    for (Sector& sector : sectors) fill_grid(sector, [](std::size_t) { return std::size_t{0}; });
+    for (Sector& sector : sectors)
+        fill_grid(sector, [](std::size_t) { return std::size_t{0}; });
     EXPECT_EQ(report_of(sectors), "");
 }
 

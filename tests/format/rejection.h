@@ -15,8 +15,10 @@
 
 namespace drtv::test {
 
-inline constexpr std::uint32_t nan_bits = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::quiet_NaN());
-inline constexpr std::uint32_t infinity_bits = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
+inline constexpr std::uint32_t nan_bits =
+    std::bit_cast<std::uint32_t>(std::numeric_limits<float>::quiet_NaN());
+inline constexpr std::uint32_t infinity_bits =
+    std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
 
 // For rules broken at a place that the case has to compute: checked by a test of its own.
 inline constexpr std::uint64_t anywhere = UINT64_MAX;

@@ -1,6 +1,6 @@
-// A small language for sector files that are wrong in one place: take a good file's bytes, change some, seal it again
-// (all checksums right), and hand it to the reader. Offsets are those of format/SPEC.md, written out here once more so
-// that a change in src/layout.h shows.
+// A small language for sector files that are wrong in one place: take a good file's bytes, change some, seal
+// it again (all checksums right), and hand it to the reader. Offsets are those of format/SPEC.md, written out
+// here once more so that a change in src/layout.h shows.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,13 @@ namespace drtv::test {
 using Bytes = std::vector<std::uint8_t>;
 
 namespace at {
-inline constexpr std::size_t magic = 0, major = 4, minor = 6, file_bytes = 8, section_count = 12, sector_i = 16,
-                             sector_j = 20, z_origin = 24, probe_count = 28, z_shift = 30, reserved = 31, checksum = 56,
-                             table = 64;
+inline constexpr std::size_t magic = 0, major = 4, minor = 6, file_bytes = 8, section_count = 12,
+                             sector_i = 16, sector_j = 20, z_origin = 24, probe_count = 28, z_shift = 30,
+                             reserved = 31, checksum = 56, table = 64;
 // Within an entry of the table.
-inline constexpr std::size_t kind = 0, version = 2, codec = 4, entry_reserved = 5, offset = 8, stored_bytes = 12,
-                             raw_bytes = 16, entry_reserved2 = 20, section_checksum = 24, entry_bytes = 32;
+inline constexpr std::size_t kind = 0, version = 2, codec = 4, entry_reserved = 5, offset = 8,
+                             stored_bytes = 12, raw_bytes = 16, entry_reserved2 = 20, section_checksum = 24,
+                             entry_bytes = 32;
 }  // namespace at
 
 struct Section {
@@ -29,7 +30,9 @@ struct Section {
 };
 
 // Entry `n` of the table, counted from 0.
-[[nodiscard]] constexpr std::size_t entry(std::size_t n) { return at::table + n * at::entry_bytes; }
+[[nodiscard]] constexpr std::size_t entry(std::size_t n) {
+    return at::table + n * at::entry_bytes;
+}
 
 [[nodiscard]] std::uint64_t get(const Bytes& file, std::size_t offset, std::size_t size);
 
@@ -64,7 +67,8 @@ class Edit {
 [[nodiscard]] Bytes with_sections(const Bytes& file, const std::vector<Section>& sections);
 
 // The same with other stored bytes in the section of this kind; its raw bytes stay as they are said to be.
-[[nodiscard]] Bytes with_stored(const Bytes& file, std::uint16_t kind, std::uint8_t codec, const Bytes& stored);
+[[nodiscard]] Bytes with_stored(const Bytes& file, std::uint16_t kind, std::uint8_t codec,
+                                const Bytes& stored);
 [[nodiscard]] Bytes with_one_more(const Bytes& file, const Section& section);
 [[nodiscard]] Bytes without(const Bytes& file, std::uint16_t kind);
 

@@ -4,14 +4,26 @@ import struct
 
 import zstd_frame
 
-SINCE_MINOR = {(7, 1): 1, (8, 1): 1, (9, 1): 1, (10, 1): 2, (8, 2): 2}  # of (kind, version), for the sections that may be missing
+SINCE_MINOR = {
+    (7, 1): 1,
+    (8, 1): 1,
+    (9, 1): 1,
+    (10, 1): 2,
+    (8, 2): 2,
+}  # of (kind, version), for the sections that may be missing
 RAW, ZSTD, FILTERED = 0, 1, 2
 
 
 def xxh64(data):
     """XXH64, seed 0 (Cyan4973/xxHash, doc/xxhash_spec.md)."""
     mask = (1 << 64) - 1
-    p1, p2, p3, p4, p5 = (0x9E3779B185EBCA87, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0x85EBCA77C2B2AE63, 0x27D4EB2F165667C5)
+    p1, p2, p3, p4, p5 = (
+        0x9E3779B185EBCA87,
+        0xC2B2AE3D27D4EB4F,
+        0x165667B19E3779F9,
+        0x85EBCA77C2B2AE63,
+        0x27D4EB2F165667C5,
+    )
 
     def rotl(value, count):
         return ((value << count) | (value >> (64 - count))) & mask
@@ -63,13 +75,22 @@ def as_int16(value):
 def read_codes(section, offset, exponent):
     """Three channels of four codes. The exponent is clamped as section 5.8 asks of a reader that does not reject it."""
     codes = struct.unpack_from("<12h", section, offset)
-    return [[decode_fixed(code, 2.0**max(-126, min(126, exponent))) for code in codes[4 * c:4 * c + 4]] for c in range(3)]
+    return [
+        [decode_fixed(code, 2.0 ** max(-126, min(126, exponent))) for code in codes[4 * c : 4 * c + 4]]
+        for c in range(3)
+    ]
 
 
 def read_bake(section):
     rays, bounces, reach, distance = struct.unpack_from("<IIff", section)
     assert math.isfinite(reach) and math.isfinite(distance)
-    return {"rays": rays, "bounces": bounces, "reach": reach, "min_distance": distance, "key": section[16:].hex()}
+    return {
+        "rays": rays,
+        "bounces": bounces,
+        "reach": reach,
+        "min_distance": distance,
+        "key": section[16:].hex(),
+    }
 
 
 def read_probes(positions, visibilities, transfers, i, j, z_origin, z_shift):
@@ -79,23 +100,50 @@ def read_probes(positions, visibilities, transfers, i, j, z_origin, z_shift):
         x, y, z, kind, reserved = struct.unpack_from("<HHHBB", positions, 8 * p)
         assert kind <= 2 and reserved == 0
         units = (65536 * i + x, 65536 * j + y, z_origin + z * 2**z_shift)
-        probes.append({
-            "position": [u / 1024 for u in units], "kind": ("ground", "vegetation", "manual")[kind],
-            "transfer": [[[decode_fixed(code, 0.5) for code in struct.unpack_from("<4h", transfers, 96 * p + 32 * c + 8 * b)]
-                          for b in range(4)] for c in range(3)],
-            "sky_visibility": [decode_fixed(code, 1) for code in struct.unpack_from("<4h", visibilities, 8 * p)]})
+        probes.append(
+            {
+                "position": [u / 1024 for u in units],
+                "kind": ("ground", "vegetation", "manual")[kind],
+                "transfer": [
+                    [
+                        [
+                            decode_fixed(code, 0.5)
+                            for code in struct.unpack_from("<4h", transfers, 96 * p + 32 * c + 8 * b)
+                        ]
+                        for b in range(4)
+                    ]
+                    for c in range(3)
+                ],
+                "sky_visibility": [
+                    decode_fixed(code, 1) for code in struct.unpack_from("<4h", visibilities, 8 * p)
+                ],
+            }
+        )
     return probes
 
 
 def read_grid(section, i, j):
     z_origin, cell_height, reserved = struct.unpack_from("<iIQ", section)
     assert abs(z_origin) <= 2**30 and 1 <= cell_height <= 2**24 and reserved == 0
-    return {"origin": [64 * i, 64 * j, z_origin / 1024], "cell": [4, 4, cell_height / 1024], "size": [16, 16, 16],
-            "cells": list(section[16:])}
+    return {
+        "origin": [64 * i, 64 * j, z_origin / 1024],
+        "cell": [4, 4, cell_height / 1024],
+        "size": [16, 16, 16],
+        "cells": list(section[16:]),
+    }
 
 
 def read_statistics(section):
-    names = ("candidates", "moved_out", "dropped_in_solid", "removed_by_volume", "thinned", "used_distance", "rays", "back_hits")
+    names = (
+        "candidates",
+        "moved_out",
+        "dropped_in_solid",
+        "removed_by_volume",
+        "thinned",
+        "used_distance",
+        "rays",
+        "back_hits",
+    )
     statistics = dict(zip(names, struct.unpack("<IIIIIfQQ", section)))
     assert math.isfinite(statistics["used_distance"])
     return statistics
@@ -118,30 +166,52 @@ def local_transfer_layout(section, probes):
 
 def read_local_transfer(section, i, j, probes):
     """For each probe, its pairs in the order of their sources."""
-    source_count, mask_bytes, pair_count, receivers_at, masks_at, codes_at = local_transfer_layout(section, probes)
+    source_count, mask_bytes, pair_count, receivers_at, masks_at, codes_at = local_transfer_layout(
+        section, probes
+    )
     assert len(section) == codes_at + 24 * pair_count
-    assert not any(section[16 + 4 * source_count:receivers_at]) and not any(section[receivers_at + 8 * probes:masks_at])
+    assert not any(section[16 + 4 * source_count : receivers_at]) and not any(
+        section[receivers_at + 8 * probes : masks_at]
+    )
     sources = [struct.unpack_from("<bbBb", section, 16 + 4 * s) for s in range(source_count)]
-    assert all(abs(di) <= 1 and abs(dj) <= 1 and probe < (255 if di or dj else probes) for di, dj, probe, _ in sources)
+    assert all(
+        abs(di) <= 1 and abs(dj) <= 1 and probe < (255 if di or dj else probes)
+        for di, dj, probe, _ in sources
+    )
     pair, local = 0, []
     for p in range(probes):
         first_pair, exponent, r0, r1, r2 = struct.unpack_from("<Ib3B", section, receivers_at + 8 * p)
         assert (first_pair, r0, r1, r2) == (pair, 0, 0, 0)
-        mask = int.from_bytes(section[masks_at + mask_bytes * p:masks_at + mask_bytes * (p + 1)], "little")
+        mask = int.from_bytes(section[masks_at + mask_bytes * p : masks_at + mask_bytes * (p + 1)], "little")
         assert mask >> source_count == 0 and pair + mask.bit_count() <= pair_count
         local.append([])
         for s, (di, dj, probe, source_exponent) in enumerate(sources):
             if mask >> s & 1:
-                local[p].append({"sector": [i + di, j + dj], "probe": probe,
-                                 "coefficients": read_codes(section, codes_at + 24 * pair, exponent + source_exponent)})
+                local[p].append(
+                    {
+                        "sector": [i + di, j + dj],
+                        "probe": probe,
+                        "coefficients": read_codes(section, codes_at + 24 * pair, exponent + source_exponent),
+                    }
+                )
                 pair += 1
     assert pair == pair_count
     return local
 
 
 def read_convergence(section):
-    names = ("error_asked", "error_median", "error_p95", "error_max", "paths_least", "paths_most", "local_bounces", "local_rays",
-             "static_rays", "local_transfer_rays")
+    names = (
+        "error_asked",
+        "error_median",
+        "error_p95",
+        "error_max",
+        "paths_least",
+        "paths_most",
+        "local_bounces",
+        "local_rays",
+        "static_rays",
+        "local_transfer_rays",
+    )
     convergence = dict(zip(names, struct.unpack("<4f4I2Q", section)))
     assert all(math.isfinite(convergence[name]) for name in names)
     return convergence
@@ -150,10 +220,17 @@ def read_convergence(section):
 def read_interiors(section, probes):
     """For each interior its probe and its mesh, in metres of the world."""
     interior_count, r0, vertex_count, triangle_count, r1 = struct.unpack_from("<HHIII", section)
-    assert interior_count <= 1024 and vertex_count <= 65536 * interior_count and triangle_count <= 2**18 and (r0, r1) == (0, 0)
+    assert (
+        interior_count <= 1024
+        and vertex_count <= 65536 * interior_count
+        and triangle_count <= 2**18
+        and (r0, r1) == (0, 0)
+    )
     vertices_at = 16 + 32 * interior_count
     triangles_at = next_16(vertices_at + 6 * vertex_count)
-    assert len(section) == triangles_at + 6 * triangle_count and not any(section[vertices_at + 6 * vertex_count:triangles_at])
+    assert len(section) == triangles_at + 6 * triangle_count and not any(
+        section[vertices_at + 6 * vertex_count : triangles_at]
+    )
     interiors, vertex, triangle = [], 0, 0  # and how many stand before this interior
     for n in range(interior_count):
         fields = struct.unpack_from("<3iBBH4I", section, 16 + 32 * n)
@@ -161,10 +238,19 @@ def read_interiors(section, probes):
         assert all(abs(o) <= 2**30 + 2**27 for o in origin) and shift <= 10 and probe < probes and r0 == 0
         assert (first_vertex, first_triangle) == (vertex, triangle) and vertices <= 65536
         assert vertex + vertices <= vertex_count and triangle + triangles <= triangle_count
-        steps = struct.iter_unpack("<3H", section[vertices_at + 6 * vertex:vertices_at + 6 * (vertex + vertices)])
-        corners = struct.iter_unpack("<3H", section[triangles_at + 6 * triangle:triangles_at + 6 * (triangle + triangles)])
-        interiors.append({"probe": probe, "vertices": [[(o + s * 2**shift) / 1024 for o, s in zip(origin, step)] for step in steps],
-                          "triangles": [list(indices) for indices in corners]})
+        steps = struct.iter_unpack(
+            "<3H", section[vertices_at + 6 * vertex : vertices_at + 6 * (vertex + vertices)]
+        )
+        corners = struct.iter_unpack(
+            "<3H", section[triangles_at + 6 * triangle : triangles_at + 6 * (triangle + triangles)]
+        )
+        interiors.append(
+            {
+                "probe": probe,
+                "vertices": [[(o + s * 2**shift) / 1024 for o, s in zip(origin, step)] for step in steps],
+                "triangles": [list(indices) for indices in corners],
+            }
+        )
         assert all(index < vertices for indices in interiors[n]["triangles"] for index in indices)
         vertex, triangle = vertex + vertices, triangle + triangles
     assert (vertex, triangle) == (vertex_count, triangle_count)
@@ -175,7 +261,9 @@ def read_residuals(high, low, classes):
     """For each pair its 12 residuals, out of their groups (section 5.10, Order)."""
     weights = (1, -1, -1, -1, -2, -4, -4, -4, -2, -4, -4, -4)
     residuals = [[0] * 12 for _ in classes]
-    order = sorted((classes[n] + weights[k], classes[n], k, n) for n in range(len(classes)) for k in range(12))
+    order = sorted(
+        (classes[n] + weights[k], classes[n], k, n) for n in range(len(classes)) for k in range(12)
+    )
     for (_, _, k, n), high_byte, low_byte in zip(order, high, low, strict=True):
         zigzag = high_byte << 8 | low_byte
         residuals[n][k] = -(zigzag + 1) // 2 if zigzag & 1 else zigzag // 2
@@ -198,16 +286,22 @@ def unfilter(filtered, probes):
     """The raw bytes of a local transfer of version 2."""
     *_, pair_count, _, _, head = local_transfer_layout(filtered, probes)
     assert len(filtered) == head + 26 * pair_count
-    shifts, classes, high, low = (filtered[head + first * pair_count:head + end * pair_count]
-                                  for first, end in ((0, 1), (1, 2), (2, 14), (14, 26)))
+    shifts, classes, high, low = (
+        filtered[head + first * pair_count : head + end * pair_count]
+        for first, end in ((0, 1), (1, 2), (2, 14), (14, 26))
+    )
     assert all(shift <= 15 for shift in shifts) and all(bits <= 16 for bits in classes)
     sums, codes = [1, 1, 1], []  # r, g, b
     for shift, residual in zip(shifts, read_residuals(high, low, classes)):
         values = [[], [as_int16(r) for r in residual[:4]], []]  # r, g, b
         green = values[1]
         for c, first_residual in ((0, 4), (2, 8)):
-            for i, r in enumerate(residual[first_residual:first_residual + 4]):
-                foretold = foretell(green[i], green[0], values[c][0]) if i else foretell_first(green[0], sums[c], sums[1])
+            for i, r in enumerate(residual[first_residual : first_residual + 4]):
+                foretold = (
+                    foretell(green[i], green[0], values[c][0])
+                    if i
+                    else foretell_first(green[0], sums[c], sums[1])
+                )
                 values[c].append(as_int16(foretold + r))
         sums = [max(1, s - s // 4 + max(v[0], 0)) for s, v in zip(sums, values)]
         codes += [as_int16(value << shift) for channel in values for value in channel]
@@ -227,32 +321,62 @@ def decode_section(kind, version, codec, stored, raw_bytes, probes):
 def read_sections(data, table, minor, probes):
     """Of each kind that is not ignored, the raw bytes."""
     entries, end = {}, 64 + len(table)
-    for kind, version, codec, r0, r1, r2, offset, stored_bytes, raw_bytes, r3, checksum in struct.iter_unpack("<HHB3BIIIIQ", table):
-        assert (r0, r1, r2, r3) == (0, 0, 0, 0) and raw_bytes <= 2**24 and (codec != RAW or raw_bytes == stored_bytes)
+    for kind, version, codec, r0, r1, r2, offset, stored_bytes, raw_bytes, r3, checksum in struct.iter_unpack(
+        "<HHB3BIIIIQ", table
+    ):
+        assert (
+            (r0, r1, r2, r3) == (0, 0, 0, 0)
+            and raw_bytes <= 2**24
+            and (codec != RAW or raw_bytes == stored_bytes)
+        )
         assert offset == next_16(end) and not any(data[end:offset]) and kind not in entries
         end = offset + stored_bytes
         assert end <= len(data) and xxh64(data[offset:end]) == checksum
         entries[kind] = (version, codec, data[offset:end], raw_bytes)
     assert end == len(data)
     assert all(entries[kind][0] == 1 for kind in range(1, 7))  # KeyError where one is missing
-    return {kind: decode_section(kind, *entry, probes) for kind, entry in entries.items()
-            if 1 <= kind <= 6 or minor >= SINCE_MINOR.get((kind, entry[0]), math.inf)}
+    return {
+        kind: decode_section(kind, *entry, probes)
+        for kind, entry in entries.items()
+        if 1 <= kind <= 6 or minor >= SINCE_MINOR.get((kind, entry[0]), math.inf)
+    }
 
 
 def read(data):
     """The sector as `drtv dump --json` shows it. Where the page's rules are broken: AssertionError, KeyError or struct.error, and
     ValueError where a Zstandard frame is."""
-    magic, major, minor, size, count, i, j, z_origin, probes, z_shift = struct.unpack_from("<4sHHIIiiiHB", data, 0)
+    magic, major, minor, size, count, i, j, z_origin, probes, z_shift = struct.unpack_from(
+        "<4sHHIIiiiHB", data, 0
+    )
     assert (magic, major, size) == (b"DRTV", 1, len(data)) and count <= 64 and 64 + 32 * count <= size
-    table = data[64:64 + 32 * count]
+    table = data[64 : 64 + 32 * count]
     assert struct.unpack_from("<Q", data, 56)[0] == xxh64(data[:56] + table)
-    assert abs(i) <= 16384 and abs(j) <= 16384 and abs(z_origin) <= 2**30 and probes <= 255 and z_shift <= 10 and not any(data[31:56])
+    assert (
+        abs(i) <= 16384
+        and abs(j) <= 16384
+        and abs(z_origin) <= 2**30
+        and probes <= 255
+        and z_shift <= 10
+        and not any(data[31:56])
+    )
     sections = read_sections(data, table, minor, probes)
-    assert [len(sections[kind]) for kind in range(1, 7)] == [48, 8 * probes, 8 * probes, 96 * probes, 4112, 40]
+    assert [len(sections[kind]) for kind in range(1, 7)] == [
+        48,
+        8 * probes,
+        8 * probes,
+        96 * probes,
+        4112,
+        40,
+    ]
 
-    sector = {"format_version": f"{major}.{minor}", "sector": [i, j], "settings": read_bake(sections[1]),
-              "probes": read_probes(sections[2], sections[3], sections[4], i, j, z_origin, z_shift),
-              "grid": read_grid(sections[5], i, j), "statistics": read_statistics(sections[6])}
+    sector = {
+        "format_version": f"{major}.{minor}",
+        "sector": [i, j],
+        "settings": read_bake(sections[1]),
+        "probes": read_probes(sections[2], sections[3], sections[4], i, j, z_origin, z_shift),
+        "grid": read_grid(sections[5], i, j),
+        "statistics": read_statistics(sections[6]),
+    }
     per_probe = {}
     if 7 in sections:
         per_probe["static_irradiance"] = read_static_irradiance(sections[7], probes)

@@ -20,24 +20,30 @@ namespace drtv::test {
 [[nodiscard]] Sector golden_sector_1_2();
 
 // A closed box between two corners, in steps of 2^shift units from the origin. Fronts outwards.
-[[nodiscard]] Interior box_interior(const std::array<std::int32_t, 3>& origin_units, const std::array<std::uint16_t, 3>& low, const std::array<std::uint16_t, 3>& high);
+[[nodiscard]] Interior box_interior(const std::array<std::int32_t, 3>& origin_units,
+                                    const std::array<std::uint16_t, 3>& low,
+                                    const std::array<std::uint16_t, 3>& high);
 
 // Valid, and else random in every field.
 [[nodiscard]] Sector random_sector(std::uint32_t seed, std::size_t probe_count);
 
-// The same with all optional sections. With one probe at least: of no probes there is no static irradiance to write.
+// The same with all optional sections. With one probe at least: of no probes there is no static irradiance to
+// write.
 [[nodiscard]] Sector random_sector_1_1(std::uint32_t seed, std::size_t probe_count);
 
 // The same with interiors, unless it has no probes.
 [[nodiscard]] Sector random_sector_1_2(std::uint32_t seed, std::size_t probe_count);
 
-// Each cell names one of the 4 probes nearest to its centre: the one that `choose`, asked with how many there are, gives the rank of.
+// Each cell names one of the 4 probes nearest to its centre: the one that `choose`, asked with how many there
+// are, gives the rank of.
 void fill_grid(Sector& sector, const std::function<std::size_t(std::size_t)>& choose);
 
 // The first probes of the sector to the east. REQUIRES: probes <= 255.
 [[nodiscard]] std::vector<LocalSource> neighbouring_sources(std::size_t probes);
 
-// Gives receiver `p` a pair with each of these sources. REQUIRES: those of `p` and all after it have none yet.
-void add_pairs(LocalTransfer& local, std::size_t p, const std::vector<std::size_t>& sources, const LightCodes& codes);
+// Gives receiver `p` a pair with each of these sources. REQUIRES: those of `p` and all after it have none
+// yet.
+void add_pairs(LocalTransfer& local, std::size_t p, const std::vector<std::size_t>& sources,
+               const LightCodes& codes);
 
 }  // namespace drtv::test

@@ -25,11 +25,11 @@ def golden(path=GOLDEN):
 
 def seal(data):
     """Writes all checksums anew."""
-    count, = struct.unpack_from("<I", data, 12)
+    (count,) = struct.unpack_from("<I", data, 12)
     for entry in range(64, 64 + 32 * count, 32):
         offset, stored = struct.unpack_from("<II", data, entry + 8)
-        struct.pack_into("<Q", data, entry + 24, sector_file.xxh64(bytes(data[offset:offset + stored])))
-    struct.pack_into("<Q", data, 56, sector_file.xxh64(bytes(data[:56] + data[64:64 + 32 * count])))
+        struct.pack_into("<Q", data, entry + 24, sector_file.xxh64(bytes(data[offset : offset + stored])))
+    struct.pack_into("<Q", data, 56, sector_file.xxh64(bytes(data[:56] + data[64 : 64 + 32 * count])))
     return data
 
 

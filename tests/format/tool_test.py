@@ -10,7 +10,19 @@ import unittest
 import jsonschema
 
 import sector_file
-from tool_case import DRTV, GOLDEN, GOLDEN_1_1, GOLDEN_FOLDER, INVALID, UNREADABLE, USAGE, Tool, golden, rounded, seal
+from tool_case import (
+    DRTV,
+    GOLDEN,
+    GOLDEN_1_1,
+    GOLDEN_FOLDER,
+    INVALID,
+    UNREADABLE,
+    USAGE,
+    Tool,
+    golden,
+    rounded,
+    seal,
+)
 
 
 FORMAT_FOLDER = os.path.join(os.path.dirname(__file__), "..", "..", "format")
@@ -20,28 +32,62 @@ SCHEMA = os.path.join(FORMAT_FOLDER, "report.schema.json")
 class Usage(Tool):
     def test_wrong_usage_exits_1_and_says_why(self):
         for arguments, words in [
-                ([], "usage: drtv"), (["fly"], 'unknown command "fly"'), (["validate"], "at least one file or folder"),
-                (["validate", "--fast", GOLDEN], 'unknown option "--fast"'), (["info"], "exactly one file"), (["info", GOLDEN, GOLDEN], "exactly one file"),
-                (["info", "--json"], 'unknown option "--json"'), (["dump", GOLDEN], "usage is: drtv dump FILE --json"), (["dump", "--json"], "usage is"),
-                (["dump", GOLDEN, GOLDEN, "--json"], "usage is"), (["preview", GOLDEN], "usage is: drtv preview"), (["preview", "--out", "a.png"], "usage is"),
-                (["preview", GOLDEN, "--out"], "--out needs a value"), (["preview", GOLDEN, "--wide"], 'unknown option "--wide"'),
-                (["preview", GOLDEN, GOLDEN, "--out", "a.png"], "one too many"), (["validate", GOLDEN, "--ignore"], "--ignore needs a value"),
-                (["validate", GOLDEN, "--ignore", "STRUCTURE"], 'there is no issue "STRUCTURE"; drtv issues lists them'),
-                (["validate", GOLDEN, "--quick", "--neighbours"], "does not go with --neighbours"), (["validate", GOLDEN, "--ignore", "GRID_NO_PROBE,CHECKSUM"], "CHECKSUM cannot be ignored"),
-                (["diff", GOLDEN, GOLDEN, "--metres-per-pixel", "1"], "there is no --png"), (["validate", GOLDEN, "--quick", "--full"], "with --full"),
-                (["validate", GOLDEN, "--max-findings", "0"], "--max-findings takes a number from 1 to 1000000, not \"0\""), (["issues", "x"], "no arguments"),
-                (["diff", GOLDEN], "two files or folders"), (["diff", GOLDEN, GOLDEN, "--png"], "--png needs a value"), (["strip", GOLDEN], "usage is: drtv strip"),
-                (["strip", GOLDEN, "--out", "x", "--keep", "transfer"], '"transfer" is no optional section'),
-                (["strip", GOLDEN, "--out", "x", "--keep", "none,all"], '"none" is no optional section'),
-                (["strip", GOLDEN, "--out", "x", "--codec", "lz4"], '--codec takes raw or zstd, not "lz4"')]:
+            ([], "usage: drtv"),
+            (["fly"], 'unknown command "fly"'),
+            (["validate"], "at least one file or folder"),
+            (["validate", "--fast", GOLDEN], 'unknown option "--fast"'),
+            (["info"], "exactly one file"),
+            (["info", GOLDEN, GOLDEN], "exactly one file"),
+            (["info", "--json"], 'unknown option "--json"'),
+            (["dump", GOLDEN], "usage is: drtv dump FILE --json"),
+            (["dump", "--json"], "usage is"),
+            (["dump", GOLDEN, GOLDEN, "--json"], "usage is"),
+            (["preview", GOLDEN], "usage is: drtv preview"),
+            (["preview", "--out", "a.png"], "usage is"),
+            (["preview", GOLDEN, "--out"], "--out needs a value"),
+            (["preview", GOLDEN, "--wide"], 'unknown option "--wide"'),
+            (["preview", GOLDEN, GOLDEN, "--out", "a.png"], "one too many"),
+            (["validate", GOLDEN, "--ignore"], "--ignore needs a value"),
+            (
+                ["validate", GOLDEN, "--ignore", "STRUCTURE"],
+                'there is no issue "STRUCTURE"; drtv issues lists them',
+            ),
+            (["validate", GOLDEN, "--quick", "--neighbours"], "does not go with --neighbours"),
+            (["validate", GOLDEN, "--ignore", "GRID_NO_PROBE,CHECKSUM"], "CHECKSUM cannot be ignored"),
+            (["diff", GOLDEN, GOLDEN, "--metres-per-pixel", "1"], "there is no --png"),
+            (["validate", GOLDEN, "--quick", "--full"], "with --full"),
+            (
+                ["validate", GOLDEN, "--max-findings", "0"],
+                '--max-findings takes a number from 1 to 1000000, not "0"',
+            ),
+            (["issues", "x"], "no arguments"),
+            (["diff", GOLDEN], "two files or folders"),
+            (["diff", GOLDEN, GOLDEN, "--png"], "--png needs a value"),
+            (["strip", GOLDEN], "usage is: drtv strip"),
+            (["strip", GOLDEN, "--out", "x", "--keep", "transfer"], '"transfer" is no optional section'),
+            (["strip", GOLDEN, "--out", "x", "--keep", "none,all"], '"none" is no optional section'),
+            (["strip", GOLDEN, "--out", "x", "--codec", "lz4"], '--codec takes raw or zstd, not "lz4"'),
+        ]:
             with self.subTest(arguments=arguments):
                 self.assertEqual(self.expect(USAGE, *arguments, err=words), "")
 
     def test_preview_refuses_numbers_and_quantities_that_are_none(self):
-        for option, values in [("--metres-per-pixel", ["0", "-1", "1000", "1m", "", "nan", "inf"]), ("--quantity", ["", "sun", "Sky", "back hits"])]:
+        for option, values in [
+            ("--metres-per-pixel", ["0", "-1", "1000", "1m", "", "nan", "inf"]),
+            ("--quantity", ["", "sun", "Sky", "back hits"]),
+        ]:
             for value in values:
                 with self.subTest(option=option, value=value):
-                    self.expect(USAGE, "preview", GOLDEN, "--out", self.path("a.png"), option, value, err=f'not "{value}"')
+                    self.expect(
+                        USAGE,
+                        "preview",
+                        GOLDEN,
+                        "--out",
+                        self.path("a.png"),
+                        option,
+                        value,
+                        err=f'not "{value}"',
+                    )
         self.assertEqual(os.listdir(self.folder), [])
 
     def test_help_and_version_go_to_stdout(self):
@@ -59,8 +105,14 @@ class Usage(Tool):
 
 class Unreadable(Tool):
     def test_missing_file_exits_2(self):
-        for arguments in (["validate"], ["info"], ["dump", "--json"], ["preview", "--out", self.path("a.png")], ["diff", GOLDEN],
-                          ["strip", "--out", self.path("b.drtv")]):
+        for arguments in (
+            ["validate"],
+            ["info"],
+            ["dump", "--json"],
+            ["preview", "--out", self.path("a.png")],
+            ["diff", GOLDEN],
+            ["strip", "--out", self.path("b.drtv")],
+        ):
             with self.subTest(arguments=arguments):
                 self.expect(UNREADABLE, *arguments, self.path("none.drtv"), err="none.drtv")
 
@@ -78,7 +130,9 @@ class Unreadable(Tool):
     def test_folder_without_sector_files_exits_2(self):
         self.write("readme.txt", b"x")
         self.expect(UNREADABLE, "validate", self.folder, err="holds no .drtv file")
-        self.expect(UNREADABLE, "preview", self.folder, "--out", self.path("a.png"), err="holds no .drtv file")
+        self.expect(
+            UNREADABLE, "preview", self.folder, "--out", self.path("a.png"), err="holds no .drtv file"
+        )
 
 
 class Validate(Tool):
@@ -92,16 +146,30 @@ class Validate(Tool):
         self.assertIn("1 sector file checked, 1 invalid", stdout)
 
     def test_empty_file_and_other_files_exit_3(self):
-        for name, data, code in (("empty.drtv", b"", "NOT_A_SECTOR_FILE"), ("zero.drtv", bytes(5000), "NOT_A_SECTOR_FILE"),
-                                 ("text.drtv", b"hello", "NOT_A_SECTOR_FILE"), ("cut.drtv", golden()[:100], "TRUNCATED")):
+        for name, data, code in (
+            ("empty.drtv", b"", "NOT_A_SECTOR_FILE"),
+            ("zero.drtv", bytes(5000), "NOT_A_SECTOR_FILE"),
+            ("text.drtv", b"hello", "NOT_A_SECTOR_FILE"),
+            ("cut.drtv", golden()[:100], "TRUNCATED"),
+        ):
             self.expect(INVALID, "validate", self.write(name, data), out=f"error {code} at byte")
 
     def test_other_major_version_is_refused_by_name(self):
         data = golden()
         data[4] = 2
         path = self.write("new.drtv", data)
-        self.expect(INVALID, "validate", path, out="error UNSUPPORTED_VERSION at byte 4: format version 2.0 is not supported")
-        self.expect(INVALID, "info", path, err="new.drtv: format version 2.0 is not supported: this reader knows version 1")
+        self.expect(
+            INVALID,
+            "validate",
+            path,
+            out="error UNSUPPORTED_VERSION at byte 4: format version 2.0 is not supported",
+        )
+        self.expect(
+            INVALID,
+            "info",
+            path,
+            err="new.drtv: format version 2.0 is not supported: this reader knows version 1",
+        )
 
     def test_folder_is_searched_below_and_every_file_reported(self):
         self.write("b/good.drtv", golden())
@@ -120,18 +188,34 @@ class Validate(Tool):
         broken = self.broken()
         report = json.loads(self.expect(INVALID, "validate", GOLDEN, broken, "--json"))
         self.assertEqual((report["checked"], report["invalid"]), (2, 1))
-        self.assertEqual(report["files"][0], {"file": GOLDEN, "valid": True, "errors": 0, "warnings": 0, "truncated": False, "findings": []})
+        self.assertEqual(
+            report["files"][0],
+            {"file": GOLDEN, "valid": True, "errors": 0, "warnings": 0, "truncated": False, "findings": []},
+        )
         finding = report["files"][1]["findings"][0]
-        self.assertEqual((finding["code"], finding["severity"], finding["offset"], finding["path"]), ("CHECKSUM", "error", 336, ""))
+        self.assertEqual(
+            (finding["code"], finding["severity"], finding["offset"], finding["path"]),
+            ("CHECKSUM", "error", 336, ""),
+        )
         self.assertIn("does not match", finding["message"])
 
     def test_unreadable_beside_good_exits_2_and_beside_broken_3(self):
         none = self.path("none.drtv")
-        self.expect(UNREADABLE, "validate", none, GOLDEN, err="does not exist", out="1 sector file checked, 0 invalid")
-        self.expect(INVALID, "validate", none, self.broken(), GOLDEN, err="does not exist", out="2 sector files checked, 1 invalid")
+        self.expect(
+            UNREADABLE, "validate", none, GOLDEN, err="does not exist", out="1 sector file checked, 0 invalid"
+        )
+        self.expect(
+            INVALID,
+            "validate",
+            none,
+            self.broken(),
+            GOLDEN,
+            err="does not exist",
+            out="2 sector files checked, 1 invalid",
+        )
 
     def test_file_name_that_is_not_utf8_still_gives_json(self):
-        name = os.fsencode(self.folder) + b"/\xff\"\n.drtv"
+        name = os.fsencode(self.folder) + b'/\xff"\n.drtv'
         with open(name, "wb") as file:
             file.write(golden())
         report = json.loads(self.expect(0, "validate", self.folder, "--json"))
@@ -157,20 +241,41 @@ class ValidateOptions(Tool):
         return self.write("old.drtv", seal(data))
 
     def test_reports_keep_the_schema(self):
-        report = self.schema_checked(GOLDEN, self.broken(), self.empty_grid(), self.with_unknown_section(), exit_code=INVALID)
-        self.assertEqual([(file["valid"], file["errors"], file["warnings"], file["truncated"]) for file in report["files"]],
-                         [(True, 0, 0, False), (False, 1, 0, False), (False, 4096, 0, True), (True, 0, 3, False)])
+        report = self.schema_checked(
+            GOLDEN, self.broken(), self.empty_grid(), self.with_unknown_section(), exit_code=INVALID
+        )
+        self.assertEqual(
+            [
+                (file["valid"], file["errors"], file["warnings"], file["truncated"])
+                for file in report["files"]
+            ],
+            [(True, 0, 0, False), (False, 1, 0, False), (False, 4096, 0, True), (True, 0, 3, False)],
+        )
         self.assertEqual((report["checked"], report["invalid"], report["warnings"]), (4, 2, 3))
-        self.assertEqual(report["files"][2]["findings"][7],
-                         {"code": "GRID_NO_PROBE", "severity": "error", "group": "index", "offset": 551, "path": "grid.cells[7]", "value": 255,
-                          "message": "names no probe, the sector has 2"})
+        self.assertEqual(
+            report["files"][2]["findings"][7],
+            {
+                "code": "GRID_NO_PROBE",
+                "severity": "error",
+                "group": "index",
+                "offset": 551,
+                "path": "grid.cells[7]",
+                "value": 255,
+                "message": "names no probe, the sector has 2",
+            },
+        )
         self.assertIsNone(report["files"][1]["findings"][0]["value"])
 
     def test_schema_refuses_what_it_should(self):
         with open(SCHEMA, encoding="utf-8") as file:
             schema = json.load(file)
         report = self.schema_checked(self.broken(), exit_code=INVALID)
-        for path, value in ((["files", 0, "findings", 0, "severity"], "fatal"), (["files", 0, "findings", 0, "offset"], -1), (["files", 0, "errors"], "1"), (["more"], 1)):
+        for path, value in (
+            (["files", 0, "findings", 0, "severity"], "fatal"),
+            (["files", 0, "findings", 0, "offset"], -1),
+            (["files", 0, "errors"], "1"),
+            (["more"], 1),
+        ):
             changed = json.loads(json.dumps(report))
             at = changed
             for key in path[:-1]:
@@ -190,11 +295,23 @@ class ValidateOptions(Tool):
         self.expect(INVALID, "validate", "--quick", self.broken())
 
     def test_ignored_code_does_not_count(self):
-        self.expect(0, "validate", self.empty_grid(), "--ignore", "GRID_REFERENCE,GRID_NO_PROBE", "--ignore", "ENERGY", out="1 sector file checked, 0 invalid\n")
+        self.expect(
+            0,
+            "validate",
+            self.empty_grid(),
+            "--ignore",
+            "GRID_REFERENCE,GRID_NO_PROBE",
+            "--ignore",
+            "ENERGY",
+            out="1 sector file checked, 0 invalid\n",
+        )
 
     def test_warnings_fail_only_when_asked(self):
         path = self.with_unknown_section()
-        self.assertIn("warning UNKNOWN_SECTION at byte 4912", self.expect(0, "validate", path, out="0 invalid, 3 warnings\n"))
+        self.assertIn(
+            "warning UNKNOWN_SECTION at byte 4912",
+            self.expect(0, "validate", path, out="0 invalid, 3 warnings\n"),
+        )
         self.expect(INVALID, "validate", "--warnings-as-errors", path, out="1 invalid, 3 warnings\n")
         self.expect(0, "validate", "--warnings-as-errors", path, "--ignore", "UNKNOWN_SECTION")
 
@@ -208,17 +325,25 @@ class ValidateOptions(Tool):
     def test_neighbours_are_looked_at_folder_by_folder(self):
         def other_key(data):
             data[272] = 99
+
         for i in range(3):
             self.write(f"a/sector_{i}_0.drtv", self.moved(i, 0, other_key if i == 1 else None))
         self.write("b/sector_0_0.drtv", self.moved(0, 0, other_key))
         self.write("b/sector_5_-7.drtv", self.moved(5, 7))
         self.expect(0, "validate", self.folder)
         report = self.schema_checked("--neighbours", self.folder, exit_code=INVALID)
-        codes = {os.path.relpath(file["file"], self.folder): [finding["code"] for finding in file["findings"]] for file in report["files"] if file["findings"]}
+        codes = {
+            os.path.relpath(file["file"], self.folder): [finding["code"] for finding in file["findings"]]
+            for file in report["files"]
+            if file["findings"]
+        }
         self.assertEqual(codes["a/sector_1_0.drtv"], ["SET_SETTINGS"])
         self.assertIn("SET_FILE_NAME", codes["b/sector_5_-7.drtv"])
         self.assertNotIn("a/sector_0_0.drtv", codes)
-        self.assertIn("2 folders, the borders of each by itself\n", self.expect(INVALID, "validate", "--neighbours", self.folder))
+        self.assertIn(
+            "2 folders, the borders of each by itself\n",
+            self.expect(INVALID, "validate", "--neighbours", self.folder),
+        )
         # Named one by one they are still one folder.
         files = [os.path.join(self.folder, "a", f"sector_{i}_0.drtv") for i in range(3)]
         self.expect(INVALID, "validate", "--neighbours", *files, out="error SET_SETTINGS")
@@ -228,7 +353,9 @@ class ValidateOptions(Tool):
         for n in range(60):
             self.write(f"{n:02}.drtv", b"no" if n % 7 == 3 else golden())
         report = self.schema_checked(self.folder, exit_code=INVALID)
-        self.assertEqual([os.path.basename(file["file"]) for file in report["files"]], [f"{n:02}.drtv" for n in range(60)])
+        self.assertEqual(
+            [os.path.basename(file["file"]) for file in report["files"]], [f"{n:02}.drtv" for n in range(60)]
+        )
         self.assertEqual([file["valid"] for file in report["files"]], [n % 7 != 3 for n in range(60)])
 
 
@@ -247,13 +374,17 @@ class Strip(Tool):
         self.expect(0, "validate", out)
         dumped = json.loads(self.expect(0, "dump", out, "--json"))
         probe = dumped["probes"][0]
-        return dumped["format_version"], [name for name in ("convergence", "interiors") if name in dumped] + [name for name in ("static_irradiance", "local") if name in probe]
+        return dumped["format_version"], [name for name in ("convergence", "interiors") if name in dumped] + [
+            name for name in ("static_irradiance", "local") if name in probe
+        ]
 
     def test_keeps_what_is_asked(self):
         self.assertEqual(self.kept(), ("1.2", ["convergence", "interiors", "static_irradiance", "local"]))
         self.assertEqual(self.kept("--keep", "none"), ("1.0", []))
         self.assertEqual(self.kept("--keep", "local_transfer"), ("1.1", ["local"]))
-        self.assertEqual(self.kept("--keep", "static_irradiance,interiors"), ("1.2", ["interiors", "static_irradiance"]))
+        self.assertEqual(
+            self.kept("--keep", "static_irradiance,interiors"), ("1.2", ["interiors", "static_irradiance"])
+        )
 
     def test_one_kind_alone_is_the_golden_file_of_that_kind(self):
         for name in ("static_irradiance", "local_transfer", "convergence"):
@@ -271,31 +402,65 @@ class Strip(Tool):
     def test_folder_keeps_its_names(self):
         self.write("in/a/one.drtv", golden())
         self.write("in/two.drtv", golden(GOLDEN_1_1))
-        self.expect(0, "strip", self.path("in"), "--out", self.path("out"), "--keep", "none", out="2 sector files, 9960 bytes before, 9488 after")
+        self.expect(
+            0,
+            "strip",
+            self.path("in"),
+            "--out",
+            self.path("out"),
+            "--keep",
+            "none",
+            out="2 sector files, 9960 bytes before, 9488 after",
+        )
         self.assertEqual(golden(self.path("out/a/one.drtv")), golden())
         self.assertTrue(os.path.exists(self.path("out/two.drtv")))
 
     def test_broken_file_is_told_and_nothing_written(self):
-        self.expect(INVALID, "strip", self.broken(), "--out", self.path("out.drtv"), err="its checksum does not match")
+        self.expect(
+            INVALID, "strip", self.broken(), "--out", self.path("out.drtv"), err="its checksum does not match"
+        )
         self.assertEqual(os.listdir(self.folder), ["broken.drtv"])
         self.write("in/a.drtv", golden())
         self.broken("in/z.drtv")
-        self.expect(INVALID, "strip", self.path("in"), "--out", self.path("out"), err="z.drtv: transfer section")
+        self.expect(
+            INVALID, "strip", self.path("in"), "--out", self.path("out"), err="z.drtv: transfer section"
+        )
         self.assertFalse(os.path.exists(self.path("out")))
 
     def test_input_is_never_written_over(self):
         self.write("in/a.drtv", golden())
         for out in (self.path("in"), self.path("in/console"), self.path("in/../in/")):
             self.expect(USAGE, "strip", self.path("in"), "--out", out, err="write to another place")
-        self.expect(USAGE, "strip", self.path("in/a.drtv"), "--out", self.path("in/a.drtv"), err="write to another place")
-        self.expect(USAGE, "strip", self.path("in/a.drtv"), "--out", self.path("in"), err="a.drtv is a file that is stripped")
+        self.expect(
+            USAGE,
+            "strip",
+            self.path("in/a.drtv"),
+            "--out",
+            self.path("in/a.drtv"),
+            err="write to another place",
+        )
+        self.expect(
+            USAGE,
+            "strip",
+            self.path("in/a.drtv"),
+            "--out",
+            self.path("in"),
+            err="a.drtv is a file that is stripped",
+        )
         self.assertEqual(os.listdir(self.path("in")), ["a.drtv"])
         self.assertEqual(golden(self.path("in/a.drtv")), golden())
 
     def test_other_files_in_the_target_are_told(self):
         self.write("in/a.drtv", golden())
         self.write("out/old.drtv", golden())
-        self.expect(0, "strip", self.path("in"), "--out", self.path("out"), out="holds 1 other sector file, left as it was\n")
+        self.expect(
+            0,
+            "strip",
+            self.path("in"),
+            "--out",
+            self.path("out"),
+            out="holds 1 other sector file, left as it was\n",
+        )
 
     def test_devices_are_not_replaced_and_links_are_followed(self):
         pipe, link, target = self.path("pipe"), self.path("link.drtv"), self.path("target.drtv")
@@ -318,7 +483,10 @@ class Diff(Tool):
         return self.write("changed.drtv", seal(data))
 
     def test_equal_files_exit_0(self):
-        self.assertEqual(self.expect(0, "diff", GOLDEN, GOLDEN), "1 sector compared, 0 differ; 0 only in the first, 0 only in the second\n")
+        self.assertEqual(
+            self.expect(0, "diff", GOLDEN, GOLDEN),
+            "1 sector compared, 0 differ; 0 only in the first, 0 only in the second\n",
+        )
         self.expect(0, "diff", GOLDEN, os.path.join(GOLDEN_FOLDER, "format_1_0_zstd.drtv"))
 
     def test_changed_number_is_named_and_measured(self):
@@ -326,13 +494,14 @@ class Diff(Tool):
             # Probe 1's T_g[2][0], by 1000 codes of scale 0.5; transfer begins at 464 there.
             self.assertEqual(struct.unpack_from("<h", data, 464 + 96 + 32 + 16)[0], 1966)
             struct.pack_into("<h", data, 464 + 96 + 32 + 16, 2966)
+
         path = self.changed(change)
         stdout = self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, path)
         self.assertIn("sector (-1, 2): 1 of 3 probes changed, 0 added, 0 removed; 0 grid cells\n", stdout)
         report = json.loads(self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, path, "--json"))
         transfer = report["sectors"][0]["changes"]["transfer"]
         self.assertAlmostEqual(transfer["largest"], 1000 / 32767 / 2, places=6)
-        self.assertAlmostEqual(transfer["rms"], 1000 / 32767 / 2 / (3 * 48)**0.5, places=6)
+        self.assertAlmostEqual(transfer["rms"], 1000 / 32767 / 2 / (3 * 48) ** 0.5, places=6)
         self.assertEqual(transfer["at"], "probe[1].transfer.g[2][0]")
         # A sky of radiance 1 has 3.5449 of Y0.
         self.assertAlmostEqual(report["changes"]["relit"]["largest"], 3.5449 * 1000 / 32767 / 2, places=4)
@@ -341,8 +510,12 @@ class Diff(Tool):
     def test_moved_probe_is_one_removed_and_one_added(self):
         def change(data):
             struct.pack_into("<H", data, 400, 50000)  # x of probe 0
+
         stdout = self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, self.changed(change))
-        self.assertIn("1 of 3 probes changed, 1 added, 1 removed; 2048 grid cells; 2 local pairs added, 2 removed", stdout)
+        self.assertIn(
+            "1 of 3 probes changed, 1 added, 1 removed; 2048 grid cells; 2 local pairs added, 2 removed",
+            stdout,
+        )
         self.assertRegex(stdout, r"probe\[1\].local from (the first's )?probe 0 of \(-1, 2\)")
 
     def test_sectors_of_one_side_only_are_named(self):
@@ -351,19 +524,33 @@ class Diff(Tool):
         struct.pack_into("<ii", other, 16, 7, 8)
         self.write("b/two.drtv", seal(other))
         stdout = self.expect(self.DIFFERENT, "diff", self.path("a"), self.path("b"))
-        self.assertIn("sector (-1, 2): only in the first\nsector (7, 8): only in the second\n0 sectors compared", stdout)
+        self.assertIn(
+            "sector (-1, 2): only in the first\nsector (7, 8): only in the second\n0 sectors compared", stdout
+        )
 
     def test_settings_and_sections_that_differ_are_told(self):
         self.expect(self.DIFFERENT, "diff", GOLDEN, self.changed(lambda data: None), out="1 added, 0 removed")
+
         def change(data):
             data[370] ^= 1
+
         self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, self.changed(change), out="; settings differ\n")
 
     def test_picture_is_drawn(self):
         def change(data):
             struct.pack_into("<H", data, 400, 50000)
+
         out = self.path("diff.png")
-        self.expect(self.DIFFERENT, "diff", GOLDEN_1_1, self.changed(change), "--png", out, "--metres-per-pixel", "0.5")
+        self.expect(
+            self.DIFFERENT,
+            "diff",
+            GOLDEN_1_1,
+            self.changed(change),
+            "--png",
+            out,
+            "--metres-per-pixel",
+            "0.5",
+        )
         with open(out, "rb") as file:
             self.assertEqual(struct.unpack(">II", file.read(24)[16:24]), (128, 128))
 
@@ -375,7 +562,9 @@ class Diff(Tool):
 
 class Show(Tool):
     def golden_files(self):
-        return sorted(os.path.join(GOLDEN_FOLDER, name) for name in os.listdir(GOLDEN_FOLDER) if name.endswith(".drtv"))
+        return sorted(
+            os.path.join(GOLDEN_FOLDER, name) for name in os.listdir(GOLDEN_FOLDER) if name.endswith(".drtv")
+        )
 
     def test_dump_equals_what_the_page_says_the_bytes_mean(self):
         for path in self.golden_files():
@@ -387,7 +576,9 @@ class Show(Tool):
         keys = {}
         for path in (GOLDEN, GOLDEN_1_1):
             dumped = json.loads(self.expect(0, "dump", path, "--json"))
-            keys[path] = [key in dumped for key in ("convergence",)] + [key in dumped["probes"][0] for key in ("static_irradiance", "local")]
+            keys[path] = [key in dumped for key in ("convergence",)] + [
+                key in dumped["probes"][0] for key in ("static_irradiance", "local")
+            ]
         self.assertEqual(keys, {GOLDEN: [False] * 3, GOLDEN_1_1: [True] * 3})
 
     def test_dump_of_exponents_beyond_their_limits_is_still_finite(self):
@@ -413,7 +604,9 @@ class Show(Tool):
         struct.pack_into("<iii", data, 16, 16384, -16384, 2**30 - 1)
         struct.pack_into("<H", data, 304, 16385)
         dumped = json.loads(self.expect(0, "dump", self.write("far.drtv", seal(data)), "--json"))
-        self.assertEqual(dumped["probes"][0]["position"], sector_file.read(bytes(data))["probes"][0]["position"])
+        self.assertEqual(
+            dumped["probes"][0]["position"], sector_file.read(bytes(data))["probes"][0]["position"]
+        )
 
     def test_version_shown_is_the_files_own(self):
         data = golden()
@@ -424,13 +617,27 @@ class Show(Tool):
 
     def test_info_names_sector_probes_and_sections(self):
         stdout = self.expect(0, "info", GOLDEN)
-        for words in ("(-1, 2): x -64 to 0 m, y 128 to 192 m", "4680 bytes, format 1.0", "2 (1 ground, 0 vegetation, 1 manual)", "10.00 to 12.00 m",
-                      "rays 2048, bounces 3, reach 512 m, min_distance 6 m", "000102030405", "9 candidates", "7.5 m", "12288", "statistics", "4112 bytes"):
+        for words in (
+            "(-1, 2): x -64 to 0 m, y 128 to 192 m",
+            "4680 bytes, format 1.0",
+            "2 (1 ground, 0 vegetation, 1 manual)",
+            "10.00 to 12.00 m",
+            "rays 2048, bounces 3, reach 512 m, min_distance 6 m",
+            "000102030405",
+            "9 candidates",
+            "7.5 m",
+            "12288",
+            "statistics",
+            "4112 bytes",
+        ):
             self.assertIn(words, stdout)
 
     def test_info_has_a_line_for_each_optional_section(self):
-        lines = {"static light    up to 32 (E/pi)\n", "local lights    5 pairs of probe and source, 3 sources, of which 1 in neighbours\n",
-                 "convergence     error 0.02 asked, 0.0125 median, 0.01875 at 95 %, 0.03125 at most; 256 to 4096 paths a probe\n"}
+        lines = {
+            "static light    up to 32 (E/pi)\n",
+            "local lights    5 pairs of probe and source, 3 sources, of which 1 in neighbours\n",
+            "convergence     error 0.02 asked, 0.0125 median, 0.01875 at 95 %, 0.03125 at most; 256 to 4096 paths a probe\n",
+        }
         stdout, before = self.expect(0, "info", GOLDEN_1_1), self.expect(0, "info", GOLDEN)
         for line in lines:
             self.assertIn(line, stdout)
@@ -439,7 +646,9 @@ class Show(Tool):
     def test_broken_file_exits_3_with_the_reason_on_stderr(self):
         path = self.broken()
         for arguments in (["info"], ["dump", "--json"], ["preview", "--out", self.path("a.png")]):
-            self.assertEqual(self.expect(INVALID, *arguments, path, err="its checksum does not match its bytes"), "")
+            self.assertEqual(
+                self.expect(INVALID, *arguments, path, err="its checksum does not match its bytes"), ""
+            )
         self.assertEqual(os.listdir(self.folder), ["broken.drtv"])
 
 

@@ -43,13 +43,16 @@ void expect_equal(const SectorView& view, const Sector& sector) {
 }
 
 void expect_equal_local(const SectorView& view, const LocalTransfer& local) {
-    EXPECT_TRUE(std::equal(view.local_sources.begin(), view.local_sources.end(), local.sources.begin(), local.sources.end()));
-    EXPECT_TRUE(std::equal(view.local_pairs.begin(), view.local_pairs.end(), local.pairs.begin(), local.pairs.end()));
+    EXPECT_TRUE(std::equal(view.local_sources.begin(), view.local_sources.end(), local.sources.begin(),
+                           local.sources.end()));
+    EXPECT_TRUE(
+        std::equal(view.local_pairs.begin(), view.local_pairs.end(), local.pairs.begin(), local.pairs.end()));
     ASSERT_EQ(view.local_receivers.size(), local.receivers.size());
     for (std::size_t p = 0; p < local.receivers.size(); ++p) {
         EXPECT_EQ(view.local_receivers[p].first_pair, local.receivers[p].first_pair);
         EXPECT_EQ(view.local_receivers[p].exponent, local.receivers[p].exponent);
-        for (std::size_t k = 0; k < view.local_mask_bytes; ++k) EXPECT_EQ(view.local_masks[p * view.local_mask_bytes + k], local.receivers[p].sources[k]);
+        for (std::size_t k = 0; k < view.local_mask_bytes; ++k)
+            EXPECT_EQ(view.local_masks[p * view.local_mask_bytes + k], local.receivers[p].sources[k]);
     }
 }
 
@@ -62,8 +65,10 @@ void expect_equal_interiors(const SectorView& view, const std::vector<Interior>&
         EXPECT_EQ(stored.probe, interiors[n].probe);
         const auto vertices = view.interior_vertices.subspan(stored.first_vertex, stored.vertex_count);
         const auto triangles = view.interior_triangles.subspan(stored.first_triangle, stored.triangle_count);
-        EXPECT_TRUE(std::equal(vertices.begin(), vertices.end(), interiors[n].vertices.begin(), interiors[n].vertices.end()));
-        EXPECT_TRUE(std::equal(triangles.begin(), triangles.end(), interiors[n].triangles.begin(), interiors[n].triangles.end()));
+        EXPECT_TRUE(std::equal(vertices.begin(), vertices.end(), interiors[n].vertices.begin(),
+                               interiors[n].vertices.end()));
+        EXPECT_TRUE(std::equal(triangles.begin(), triangles.end(), interiors[n].triangles.begin(),
+                               interiors[n].triangles.end()));
     }
 }
 
@@ -124,16 +129,19 @@ TEST(SectorViewLookup, FindsProbesPositionsAndPairsAsAReaderDoes) {
         for (std::size_t s = 0; s < local.sources.size(); ++s) {
             const LocalPair found = find_local_pair(view, p, s);
             ASSERT_EQ(found.codes != nullptr, has_pair(local.receivers[p], s));
-            if (found.codes == nullptr) continue;
+            if (found.codes == nullptr)
+                continue;
             EXPECT_EQ(*found.codes, local.pairs[pair++]);
-            EXPECT_EQ(found.scale, scale_of_exponent(local.receivers[p].exponent + local.sources[s].exponent));
+            EXPECT_EQ(found.scale,
+                      scale_of_exponent(local.receivers[p].exponent + local.sources[s].exponent));
         }
     }
 }
 
 TEST(SectorViewLookup, GridIsReadAsThePageSays) {
     Sector sector = golden_sector();  // (-1, 2), grid from 8 m, cells of 1 m
-    for (std::size_t cell = 0; cell < grid_cell_count; ++cell) sector.grid.cells[cell] = static_cast<std::uint8_t>(cell % 2);
+    for (std::size_t cell = 0; cell < grid_cell_count; ++cell)
+        sector.grid.cells[cell] = static_cast<std::uint8_t>(cell % 2);
     sector.grid.cells[3 + 16 * 5 + 256 * 7] = 77;
     const Bytes file = write_sector(sector);
     const SectorView view = open(file);
@@ -149,7 +157,8 @@ TEST(SectorViewLookup, GridIsReadAsThePageSays) {
 TEST(SectorViewLookup, InteriorsHoldWhatIsInside) {
     const Bytes file = golden_bytes_1_2();
     const SectorView view = open(file);
-    // A box from (-20, 156, 9) to (-12, 164, 13) m, and one with a roof from (-24, 169, 10) to (-8, 185, 18) m, its ridge at 18.94 m.
+    // A box from (-20, 156, 9) to (-12, 164, 13) m, and one with a roof from (-24, 169, 10) to (-8, 185, 18)
+    // m, its ridge at 18.94 m.
     EXPECT_EQ(find_interior(view, {-16, 160, 10}), &view.interiors[0]);
     EXPECT_EQ(find_interior(view, {-12.01f, 163.99f, 12.99f}), &view.interiors[0]);
     EXPECT_EQ(find_interior(view, {-11.99f, 160, 10}), nullptr);
@@ -160,7 +169,8 @@ TEST(SectorViewLookup, InteriorsHoldWhatIsInside) {
 }
 
 TEST(UnpackSector, GivesTheRawFile) {
-    for (const Sector& sector : {golden_sector(), golden_sector_1_1(), golden_sector_1_2(), random_sector_1_2(9, 70), random_sector(2, 0)}) {
+    for (const Sector& sector : {golden_sector(), golden_sector_1_1(), golden_sector_1_2(),
+                                 random_sector_1_2(9, 70), random_sector(2, 0)}) {
         Bytes raw = {1, 2, 3};
         ASSERT_TRUE(unpack_sector(write_sector(sector, {Codec::zstd}), raw).ok());
         EXPECT_EQ(raw, write_sector(sector));

@@ -1,4 +1,5 @@
-// Adds the golden files that are not there yet: write_golden FOLDER. Their dumps are then `drtv dump FILE --json > FILE.json`.
+// Adds the golden files that are not there yet: write_golden FOLDER. Their dumps are then `drtv dump FILE
+// --json > FILE.json`.
 #include "tests/format/golden_files.h"
 
 #include <cstdio>
@@ -12,9 +13,11 @@ int main(int argc, char** argv) {
     }
     for (const drtv::test::GoldenFile& golden : drtv::test::golden_files()) {
         const std::filesystem::path path = std::filesystem::path(argv[1]) / (golden.name + ".drtv");
-        if (std::filesystem::exists(path)) continue;
+        if (std::filesystem::exists(path))
+            continue;
         const std::vector<std::uint8_t> bytes = drtv::write_sector(golden.sector, {golden.codec});
-        std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        std::ofstream(path, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
         std::printf("%s\n", path.c_str());
     }
     return 0;

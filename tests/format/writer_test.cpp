@@ -22,8 +22,12 @@ struct Kind {
 
 class SectorWriter : public testing::TestWithParam<Kind> {
   protected:
-    [[nodiscard]] static Bytes write(const Sector& sector) { return write_sector(sector, {GetParam().codec}); }
-    [[nodiscard]] static Sector make(std::uint32_t seed, std::size_t probe_count) { return GetParam().sector(seed, probe_count); }
+    [[nodiscard]] static Bytes write(const Sector& sector) {
+        return write_sector(sector, {GetParam().codec});
+    }
+    [[nodiscard]] static Sector make(std::uint32_t seed, std::size_t probe_count) {
+        return GetParam().sector(seed, probe_count);
+    }
 };
 
 TEST_P(SectorWriter, WhatIsWrittenIsReadBack) {
@@ -48,7 +52,8 @@ TEST_P(SectorWriter, WhatIsReadIsWrittenAsTheSameBytes) {
 TEST_P(SectorWriter, ValidSectorPassesTheValidator) {
     for (std::size_t count : probe_counts) {
         for (const Finding& finding : validate_sector(write(make(5, count))).findings) {
-            ADD_FAILURE() << count << " probes: " << finding.issue->code << ' ' << finding.path << ' ' << finding.message;
+            ADD_FAILURE() << count << " probes: " << finding.issue->code << ' ' << finding.path << ' '
+                          << finding.message;
         }
     }
 }
@@ -66,12 +71,17 @@ TEST_P(SectorWriter, SectionsAreAlignedAndInTheOrderOfKinds) {
     EXPECT_EQ(entries.back().offset + entries.back().stored_bytes, bytes.size());
 }
 
-TEST_P(SectorWriter, FileHasTheLeastVersionThatItsSectionsNeed) { EXPECT_EQ(get(write(make(1, 3)), at::minor, 2), GetParam().minor); }
+TEST_P(SectorWriter, FileHasTheLeastVersionThatItsSectionsNeed) {
+    EXPECT_EQ(get(write(make(1, 3)), at::minor, 2), GetParam().minor);
+}
 
 INSTANTIATE_TEST_SUITE_P(, SectorWriter,
-                         testing::Values(Kind{"raw", Codec::raw, random_sector, 0, 6}, Kind{"zstd", Codec::zstd, random_sector, 0, 6},
-                                         Kind{"raw_1_1", Codec::raw, random_sector_1_1, 1, 9}, Kind{"zstd_1_1", Codec::zstd, random_sector_1_1, 2, 9},
-                                         Kind{"raw_1_2", Codec::raw, random_sector_1_2, 2, 10}, Kind{"zstd_1_2", Codec::zstd, random_sector_1_2, 2, 10}),
+                         testing::Values(Kind{"raw", Codec::raw, random_sector, 0, 6},
+                                         Kind{"zstd", Codec::zstd, random_sector, 0, 6},
+                                         Kind{"raw_1_1", Codec::raw, random_sector_1_1, 1, 9},
+                                         Kind{"zstd_1_1", Codec::zstd, random_sector_1_1, 2, 9},
+                                         Kind{"raw_1_2", Codec::raw, random_sector_1_2, 2, 10},
+                                         Kind{"zstd_1_2", Codec::zstd, random_sector_1_2, 2, 10}),
                          [](const auto& kind) { return kind.param.name; });
 
 TEST(SectorSize, OfSeventyProbesIsWithinTheSeedsBudget) {

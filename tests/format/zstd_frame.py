@@ -11,7 +11,10 @@ NUMBER_OF_BITS = {  # of each code
     "offset": list(range(32)),
 }
 BASELINE = {  # of each code: where the values of the code before it end
-    kind: [first + sum(1 << bits for bits in NUMBER_OF_BITS[kind][:code]) for code in range(len(NUMBER_OF_BITS[kind]))]
+    kind: [
+        first + sum(1 << bits for bits in NUMBER_OF_BITS[kind][:code])
+        for code in range(len(NUMBER_OF_BITS[kind]))
+    ]
     for kind, first in (("literals length", 0), ("match length", 3), ("offset", 1))
 }
 DEFAULT_DISTRIBUTION = {
@@ -39,7 +42,7 @@ class Fields:
     def take(self, count, what):
         check(count <= self.left(), f"{what} is cut off")
         self.at += count
-        return self.data[self.at - count:self.at]
+        return self.data[self.at - count : self.at]
 
     def number(self, size, what):
         return int.from_bytes(self.take(size, what), "little")
@@ -56,7 +59,9 @@ class Bitstream:
     def peek(self, count):
         end = self.left + 32
         start = end - count
-        return int.from_bytes(self.data[start >> 3:(end + 7) >> 3], "little") >> (start & 7) & ((1 << count) - 1)
+        return int.from_bytes(self.data[start >> 3 : (end + 7) >> 3], "little") >> (start & 7) & (
+            (1 << count) - 1
+        )
 
     def skip(self, count):
         check(count <= self.left, "a bitstream is cut off")
@@ -98,7 +103,7 @@ def fse_table(probabilities):
 
 
 def read_fse_table(fields, max_accuracy_log, symbol_count):
-    bits, at = int.from_bytes(fields.data[fields.at:], "little"), 4
+    bits, at = int.from_bytes(fields.data[fields.at :], "little"), 4
     accuracy_log = (bits & 15) + 5
     check(accuracy_log <= max_accuracy_log, f"an FSE table has the Accuracy_Log {accuracy_log}")
     remaining, probabilities = 1 << accuracy_log, []
@@ -150,7 +155,7 @@ def read_huffman_table(fields):
         weights = read_fse_weights(fields.take(header, "the Huffman tree description"))
     else:
         packed = fields.take((header - 126) // 2, "the Huffman tree description")
-        weights = [weight for byte in packed for weight in (byte >> 4, byte & 15)][:header - 127]
+        weights = [weight for byte in packed for weight in (byte >> 4, byte & 15)][: header - 127]
     total = sum(1 << weight >> 1 for weight in weights)
     max_bits = total.bit_length()
     check(1 <= max_bits <= 11, "Huffman codes with no bits or more than 11")
@@ -158,8 +163,13 @@ def read_huffman_table(fields):
     check(last & (last - 1) == 0, "the last Huffman weight does not complete a power of two")
     weights.append(last.bit_length())
     check(1 in weights, "no Huffman code has the greatest length")
-    return [(symbol, max_bits + 1 - weight) for weight in range(1, max_bits + 1)
-            for symbol, its_weight in enumerate(weights) if its_weight == weight for _ in range(1 << (weight - 1))]
+    return [
+        (symbol, max_bits + 1 - weight)
+        for weight in range(1, max_bits + 1)
+        for symbol, its_weight in enumerate(weights)
+        if its_weight == weight
+        for _ in range(1 << (weight - 1))
+    ]
 
 
 def decode_huffman_stream(data, table, size):
@@ -204,12 +214,16 @@ class Frame:
             self.huffman_table = read_huffman_table(streams)
         check(self.huffman_table, "a Treeless_Literals_Block without a Huffman tree before it")
         if size_format == 0:
-            return decode_huffman_stream(streams.take(streams.left(), "Stream1"), self.huffman_table, regenerated_size)
+            return decode_huffman_stream(
+                streams.take(streams.left(), "Stream1"), self.huffman_table, regenerated_size
+            )
         check(regenerated_size >= 6, "four Huffman-coded streams for fewer than 6 literals")
         stream_sizes = [streams.number(2, "the jump table") for _ in range(3)]
         size, literals = (regenerated_size + 3) // 4, bytearray()
         for stream_size in stream_sizes:
-            literals += decode_huffman_stream(streams.take(stream_size, "a Huffman-coded stream"), self.huffman_table, size)
+            literals += decode_huffman_stream(
+                streams.take(stream_size, "a Huffman-coded stream"), self.huffman_table, size
+            )
         stream = streams.take(streams.left(), "Stream4")
         return literals + decode_huffman_stream(stream, self.huffman_table, regenerated_size - 3 * size)
 
@@ -239,11 +253,16 @@ class Frame:
         for kind, shift in (("literals length", 6), ("offset", 4), ("match length", 2)):
             self.read_sequence_table(fields, kind, modes >> shift & 3)
         bits = Bitstream(fields.take(fields.left(), "the sequences"))
-        states = {kind: bits.read(log2(self.fse_tables[kind])) for kind in ("literals length", "offset", "match length")}
+        states = {
+            kind: bits.read(log2(self.fse_tables[kind]))
+            for kind in ("literals length", "offset", "match length")
+        }
         for left in reversed(range(count)):
             codes = {kind: self.fse_tables[kind][state][0] for kind, state in states.items()}
-            yield [BASELINE[kind][codes[kind]] + bits.read(NUMBER_OF_BITS[kind][codes[kind]])
-                   for kind in ("offset", "match length", "literals length")]
+            yield [
+                BASELINE[kind][codes[kind]] + bits.read(NUMBER_OF_BITS[kind][codes[kind]])
+                for kind in ("offset", "match length", "literals length")
+            ]
             for kind in ("literals length", "match length", "offset") if left else ():
                 _, num_bits, baseline = self.fse_tables[kind][states[kind]]
                 states[kind] = baseline + bits.read(num_bits)
@@ -266,15 +285,23 @@ class Frame:
         end = len(content) + self.block_maximum_size
         for offset_value, match_length, literals_length in self.read_sequences(fields):
             check(literals_length <= len(literals) - used, "sequences with more literals than there are")
-            check(len(content) + literals_length + match_length <= end, "a block is larger than Block_Maximum_Size")
-            content += literals[used:used + literals_length]
+            check(
+                len(content) + literals_length + match_length <= end,
+                "a block is larger than Block_Maximum_Size",
+            )
+            content += literals[used : used + literals_length]
             used += literals_length
             offset = self.use_offset(offset_value, literals_length)
             # The RFC has offsets smaller than Window_Size; libzstd writes that one too, and a window holds it.
-            check(1 <= offset <= min(len(content), self.window_size), "an offset is 0 or beyond the content or Window_Size")
+            check(
+                1 <= offset <= min(len(content), self.window_size),
+                "an offset is 0 or beyond the content or Window_Size",
+            )
             start = len(content) - offset
-            match = content[start:start + match_length]
-            content += (match * (match_length // len(match) + 1))[:match_length]  # where it overlaps itself, it repeats
+            match = content[start : start + match_length]
+            content += (match * (match_length // len(match) + 1))[
+                :match_length
+            ]  # where it overlaps itself, it repeats
         content += literals[used:]
         check(len(content) <= end, "a block is larger than Block_Maximum_Size")
 
@@ -311,9 +338,13 @@ def decode(data):
     while not frame.decode_block(fields):
         pass
     if size_bytes:
-        check(len(frame.content) == content_size, f"{len(frame.content)} bytes of content where {content_size} were announced")
+        check(
+            len(frame.content) == content_size,
+            f"{len(frame.content)} bytes of content where {content_size} were announced",
+        )
     if descriptor & 4:
         from sector_file import xxh64  # here, since sector_file imports this module
+
         checksum = fields.number(4, "the Content_Checksum")
         check(checksum == xxh64(frame.content) & 0xFFFFFFFF, "the Content_Checksum is wrong")
     check(fields.left() == 0, "bytes behind the frame")

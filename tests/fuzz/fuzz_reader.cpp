@@ -1,5 +1,5 @@
-// Reader, view, writer and the validator's structure on any bytes: they agree on what can be read, and what was read survives being
-// written, raw and compressed.
+// Reader, view, writer and the validator's structure on any bytes: they agree on what can be read, and what
+// was read survives being written, raw and compressed.
 #include "tests/fuzz/sealed_mutator.h"
 
 #include <drtv/read.h>
@@ -12,16 +12,20 @@
 namespace {
 
 void require(bool holds) {
-    if (!holds) std::abort();
+    if (!holds)
+        std::abort();
 }
 
 void check_view(const drtv::Sector& sector, const std::vector<std::uint8_t>& raw_file) {
     drtv::SectorView view;
     require(drtv::open_sector(raw_file, view).ok());
     require(view.probe_count == sector.probes.size() && view.interiors.size() == sector.interiors.size());
-    for (std::size_t p = 0; p < view.probe_count; ++p) require(view.transfer[p] == sector.probes[p].transfer && view.positions[p].position == sector.probes[p].position);
+    for (std::size_t p = 0; p < view.probe_count; ++p)
+        require(view.transfer[p] == sector.probes[p].transfer &&
+                view.positions[p].position == sector.probes[p].position);
     require(view.local_pairs.size() == (sector.local_transfer ? sector.local_transfer->pairs.size() : 0));
-    for (std::size_t n = 0; n < view.local_pairs.size(); ++n) require(view.local_pairs[n] == sector.local_transfer->pairs[n]);
+    for (std::size_t n = 0; n < view.local_pairs.size(); ++n)
+        require(view.local_pairs[n] == sector.local_transfer->pairs[n]);
 }
 
 }  // namespace
@@ -36,14 +40,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(status.ok() == report.valid());
     require(opened.error == drtv::ReadError::compressed || opened.ok() == status.ok());
     require(status.ok() || (!status.message.empty() && status.offset <= size));
-    if (!status.ok()) return 0;
+    if (!status.ok())
+        return 0;
 
     for (const drtv::Codec codec : {drtv::Codec::raw, drtv::Codec::zstd}) {
         const std::vector<std::uint8_t> written = drtv::write_sector(sector, {codec});
         drtv::Sector again;
         require(drtv::read_sector(written, again).ok());
         require(drtv::write_sector(again) == drtv::write_sector(sector));
-        if (codec == drtv::Codec::raw) check_view(sector, written);
+        if (codec == drtv::Codec::raw)
+            check_view(sector, written);
     }
     return 0;
 }

@@ -15,12 +15,14 @@ namespace {
 
 void write(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
     std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 void write_gltf(const std::filesystem::path& folder) {
     using namespace drtv::test;
-    for (const auto& [name, builder] : {std::pair("plain", specimen()), std::pair("extended", extended_specimen())}) {
+    for (const auto& [name, builder] :
+         {std::pair("plain", specimen()), std::pair("extended", extended_specimen())}) {
         write(folder / (std::string(name) + ".glb"), builder.glb());
         write(folder / (std::string(name) + ".gltf"), bytes_of(builder.gltf()));
     }
@@ -29,20 +31,24 @@ void write_gltf(const std::filesystem::path& folder) {
 void write_sectors(const std::filesystem::path& folder) {
     using namespace drtv;
     using namespace drtv::test;
-    for (const auto& [name, sector] : {std::pair("golden_1_0", golden_sector()), std::pair("golden_1_1", golden_sector_1_1()), std::pair("golden_1_2", golden_sector_1_2()),
-                                       std::pair("random", random_sector_1_2(3, 5)), std::pair("empty", random_sector(4, 0))}) {
+    for (const auto& [name, sector] :
+         {std::pair("golden_1_0", golden_sector()), std::pair("golden_1_1", golden_sector_1_1()),
+          std::pair("golden_1_2", golden_sector_1_2()), std::pair("random", random_sector_1_2(3, 5)),
+          std::pair("empty", random_sector(4, 0))}) {
         write(folder / (std::string(name) + ".drtv"), write_sector(sector));
         write(folder / (std::string(name) + "_zstd.drtv"), write_sector(sector, {Codec::zstd}));
     }
 }
 
-// As fuzz_zstd reads them: index of the section, filtered or not, 24s of raw bytes more, unused; then the stored bytes.
+// As fuzz_zstd reads them: index of the section, filtered or not, 24s of raw bytes more, unused; then the
+// stored bytes.
 void write_frames(const std::filesystem::path& folder) {
     using namespace drtv::test;
     const Bytes packed = drtv::write_sector(golden_sector_1_2(), {drtv::Codec::zstd});
     const std::vector<Section> raw = sections_of(golden_bytes_1_2()), stored = sections_of(packed);
     for (std::size_t n = 0; n < raw.size(); ++n) {
-        Bytes seed = {static_cast<std::uint8_t>(n), static_cast<std::uint8_t>(stored[n].codec == 2 ? 1 : 0), 0, 0};
+        Bytes seed = {static_cast<std::uint8_t>(n), static_cast<std::uint8_t>(stored[n].codec == 2 ? 1 : 0),
+                      0, 0};
         const Bytes frame = stored[n].codec == 0 ? zstd_frame(raw[n].stored) : stored[n].stored;
         seed.insert(seed.end(), frame.begin(), frame.end());
         write(folder / std::to_string(n), seed);

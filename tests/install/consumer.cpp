@@ -6,7 +6,10 @@ alignas(16) static std::uint8_t bytes[1 << 20];
 
 int main(int, char** argv) {
     drtv::SectorView sector;
-    if (!drtv::open_sector({bytes, std::fread(bytes, 1, sizeof bytes, std::fopen(argv[1], "rb"))}, sector).ok()) return 1;
-    const auto colours = drtv::relight(sector.transfer[0], sector.sky_visibility[0], drtv::constant_sky({1, 1, 1}), {});
+    if (!drtv::open_sector({bytes, std::fread(bytes, 1, sizeof bytes, std::fopen(argv[1], "rb"))}, sector)
+             .ok())
+        return 1;
+    const auto colours =
+        drtv::relight(sector.transfer[0], sector.sky_visibility[0], drtv::constant_sky({1, 1, 1}), {});
     std::printf("%zu probes, from below %.4f\n", sector.probe_count, static_cast<double>(colours[3][0]));
 }

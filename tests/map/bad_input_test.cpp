@@ -17,7 +17,9 @@ namespace {
 using map::Map;
 using Parts = std::initializer_list<std::string>;
 
-tl::expected<Map, std::string> import_text(const std::string& text) { return import_files({{"map.gltf", bytes_of(text)}}, {"map.gltf"}); }
+tl::expected<Map, std::string> import_text(const std::string& text) {
+    return import_files({{"map.gltf", bytes_of(text)}}, {"map.gltf"});
+}
 
 // A textured, indexed ground on node 1, child of node 0; `edit` breaks it.
 GltfBuilder sound() {
@@ -37,15 +39,22 @@ void expect_broken(Parts parts, const std::function<void(Json&)>& edit) {
     SCOPED_TRACE(::testing::PrintToString(all));
     const auto result = import_text(b.json.dump());
     expect_refused(result, {"map.gltf: "});
-    for (const std::string& part : all) expect_refused(result, {part});
+    for (const std::string& part : all)
+        expect_refused(result, {part});
 }
 
-TEST(BadInput, SoundFileIsAccepted) { EXPECT_EQ(expect_accepted(sound().import()).objects.size(), 1u); }
+TEST(BadInput, SoundFileIsAccepted) {
+    EXPECT_EQ(expect_accepted(sound().import()).objects.size(), 1u);
+}
 
 TEST(BadInput, FilesThatAreNotGltf) {
-    for (const std::string& text : {std::string(), std::string(" "), std::string("hello"), std::string("glTF"), std::string("\x89PNG\r\n\x1A\n"), std::string("<xml/>"), std::string("[]"), std::string("1"), std::string("null"),
-                                    std::string("{"), std::string("{}"), std::string("{\"asset\"}"), std::string("{\"asset\": {\"version\": \"2.0\"}} x"), std::string("\xEF\xBB\xBF{}"), std::string(100, '\0'),
-                                    std::string("{\"a\": \"\xFF\xFE\"}"), std::string("{\"asset\": {\"version\": 1e999}}")}) {
+    for (const std::string& text :
+         {std::string(), std::string(" "), std::string("hello"), std::string("glTF"),
+          std::string("\x89PNG\r\n\x1A\n"), std::string("<xml/>"), std::string("[]"), std::string("1"),
+          std::string("null"), std::string("{"), std::string("{}"), std::string("{\"asset\"}"),
+          std::string("{\"asset\": {\"version\": \"2.0\"}} x"), std::string("\xEF\xBB\xBF{}"),
+          std::string(100, '\0'), std::string("{\"a\": \"\xFF\xFE\"}"),
+          std::string("{\"asset\": {\"version\": 1e999}}")}) {
         expect_refused(import_text(text), {"map.gltf: "});
     }
 }
@@ -53,14 +62,17 @@ TEST(BadInput, FilesThatAreNotGltf) {
 TEST(BadInput, DeeplyNestedJson) {
     for (const char* open : {"[", "{\"a\":"}) {
         std::string text = "{\"asset\":{\"version\":\"2.0\"},\"extras\":";
-        for (int n = 0; n < 1000000; ++n) text += open;
+        for (int n = 0; n < 1000000; ++n)
+            text += open;
         expect_refused(import_text(text), {"map.gltf: "});
     }
 }
 
 TEST(BadInput, MissingFileIsNamed) {
     expect_refused(import_files({}, {"nowhere/map.gltf"}), {"nowhere/map.gltf"});
-    expect_refused(map::import_map(std::vector<std::string>{"nowhere.gltf"}, map::folder_source("/nonexistent")), {"nowhere.gltf", "No such file"});
+    expect_refused(
+        map::import_map(std::vector<std::string>{"nowhere.gltf"}, map::folder_source("/nonexistent")),
+        {"nowhere.gltf", "No such file"});
 }
 
 TEST(BadInput, Versions) {
@@ -73,7 +85,8 @@ TEST(BadInput, Versions) {
 }
 
 TEST(BadInput, UnsupportedRequiredExtensionIsNamed) {
-    for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_texture_basisu", "MY_own"}) {
+    for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_texture_webp",
+                             "KHR_texture_basisu", "MY_own"}) {
         expect_broken({name}, [&](Json& j) { j["extensionsRequired"] = {"KHR_texture_transform", name}; });
     }
     expect_broken({"extensionsRequired"}, [](Json& j) { j["extensionsRequired"] = {1}; });
@@ -86,9 +99,11 @@ TEST(BadInput, Buffers) {
     expect_broken({"buffer 0", "byteLength"}, [](Json& j) { j["buffers"][0].erase("byteLength"); });
     expect_broken({"buffer 0", "byteLength"}, [](Json& j) { j["buffers"][0]["byteLength"] = -1; });
     expect_broken({"buffer 0", "100000"}, [](Json& j) { j["buffers"][0]["byteLength"] = 100000; });
-    expect_broken({"buffer 0"}, [](Json& j) { j["buffers"][0]["uri"] = "data:application/octet-stream;base64,"; });
+    expect_broken({"buffer 0"},
+                  [](Json& j) { j["buffers"][0]["uri"] = "data:application/octet-stream;base64,"; });
     expect_broken({"buffer 0"}, [](Json& j) { j["buffers"][0]["uri"] = "data:text/plain,hello"; });
-    expect_broken({"buffer 0"}, [](Json& j) { j["buffers"][0]["uri"] = "data:application/octet-stream;base64,####"; });
+    expect_broken({"buffer 0"},
+                  [](Json& j) { j["buffers"][0]["uri"] = "data:application/octet-stream;base64,####"; });
     expect_broken({"buffer 0", "uri"}, [](Json& j) { j["buffers"][0]["uri"] = 3; });
     // Decodes to bytes that are not UTF-8 (found by fuzzing: the importer threw).
     expect_broken({"buffer 0", "uri"}, [](Json& j) { j["buffers"][0]["uri"] = "%AA"; });
@@ -98,8 +113,11 @@ TEST(BadInput, Buffers) {
     expect_broken({"bufferView 1", "byteLength"}, [](Json& j) { j["bufferViews"][1].erase("byteLength"); });
     expect_broken({"bufferView 1", "byteOffset"}, [](Json& j) { j["bufferViews"][1]["byteOffset"] = -4; });
     expect_broken({"bufferView 1", "byteLength"}, [](Json& j) { j["bufferViews"][1]["byteLength"] = 1e300; });
-    expect_broken({"bufferView 1", "byteLength"}, [](Json& j) { j["bufferViews"][1]["byteLength"] = UINT64_MAX; });
-    expect_broken({"bufferView 1", "1000048"}, [](Json& j) { j["bufferViews"][1].update({{"byteOffset", 1000000}, {"byteLength", 48}}); });
+    expect_broken({"bufferView 1", "byteLength"},
+                  [](Json& j) { j["bufferViews"][1]["byteLength"] = UINT64_MAX; });
+    expect_broken({"bufferView 1", "1000048"}, [](Json& j) {
+        j["bufferViews"][1].update({{"byteOffset", 1000000}, {"byteLength", 48}});
+    });
     expect_broken({"bufferView 1", "byteStride"}, [](Json& j) { j["bufferViews"][1]["byteStride"] = 13; });
     expect_broken({"bufferView 1", "byteStride"}, [](Json& j) { j["bufferViews"][1]["byteStride"] = 4096; });
 }
@@ -109,16 +127,22 @@ TEST(BadInput, ExternalBufferThatIsTooShort) {
     b.place(ground(1));
     FileBytes shorter = b.bin;
     shorter.pop_back();
-    expect_refused(import_files({{"map.gltf", bytes_of(b.gltf("x.bin"))}, {"x.bin", shorter}}, {"map.gltf"}), {"map.gltf", "buffer 0", "x.bin", std::to_string(shorter.size()), std::to_string(b.bin.size())});
-    expect_refused(import_files({{"map.gltf", bytes_of(b.gltf("x.bin"))}, {"x.bin", {}}}, {"map.gltf"}), {"map.gltf", "buffer 0", "x.bin"});
+    expect_refused(
+        import_files({{"map.gltf", bytes_of(b.gltf("x.bin"))}, {"x.bin", shorter}}, {"map.gltf"}),
+        {"map.gltf", "buffer 0", "x.bin", std::to_string(shorter.size()), std::to_string(b.bin.size())});
+    expect_refused(import_files({{"map.gltf", bytes_of(b.gltf("x.bin"))}, {"x.bin", {}}}, {"map.gltf"}),
+                   {"map.gltf", "buffer 0", "x.bin"});
 }
 
 TEST(BadInput, GlbBinChunk) {
     GltfBuilder b;
     b.place(ground(1));
-    const auto import_glb = [](const FileBytes& glb) { return import_files({{"map.glb", glb}}, {"map.glb"}); };
+    const auto import_glb = [](const FileBytes& glb) {
+        return import_files({{"map.glb", glb}}, {"map.glb"});
+    };
     expect_refused(import_glb(glb_of(b.document().dump(), {})), {"map.glb", "buffer 0"});
-    expect_refused(import_glb(glb_of(b.document().dump(), std::span(b.bin).first(8))), {"map.glb", "buffer 0"});
+    expect_refused(import_glb(glb_of(b.document().dump(), std::span(b.bin).first(8))),
+                   {"map.glb", "buffer 0"});
     FileBytes glb = b.glb();
     glb[4] = 1;
     expect_refused(import_glb(glb), {"map.glb", "version 1"});
@@ -141,22 +165,45 @@ TEST(BadInput, GlbBinChunk) {
 }
 
 TEST(BadInput, PathsThatLeaveTheFolder) {
-    for (const char* uri : {"../secret.bin", "a/../../secret.bin", "%2e%2e/secret.bin", "..%2Fsecret.bin", "a/..", "/etc/passwd", "%2Fetc/passwd", "file:///etc/passwd", "http://example.org/x", "C:\\x", "C:/x", "..\\x", "a\\..\\..\\x", "a%00b", "", "%zz",
-                            "\\\\host\\share", "data:/../../secret.bin", "DATA:/../x", "a/./../../x"}) {
+    for (const char* uri : {"../secret.bin",
+                            "a/../../secret.bin",
+                            "%2e%2e/secret.bin",
+                            "..%2Fsecret.bin",
+                            "a/..",
+                            "/etc/passwd",
+                            "%2Fetc/passwd",
+                            "file:///etc/passwd",
+                            "http://example.org/x",
+                            "C:\\x",
+                            "C:/x",
+                            "..\\x",
+                            "a\\..\\..\\x",
+                            "a%00b",
+                            "",
+                            "%zz",
+                            "\\\\host\\share",
+                            "data:/../../secret.bin",
+                            "DATA:/../x",
+                            "a/./../../x"}) {
         std::vector<std::string> asked;
         GltfBuilder b;
         b.place(ground(1));
         b.json = Json::parse(b.gltf());
         for (const char* array : {"buffers", "images"}) {
             Json broken = b.json;
-            if (std::string(array) == "images") broken["images"] = Json::array({Json::object({{"uri", uri}})});
-            else broken["buffers"][0]["uri"] = uri;
+            if (std::string(array) == "images")
+                broken["images"] = Json::array({Json::object({{"uri", uri}})});
+            else
+                broken["buffers"][0]["uri"] = uri;
             const std::string text = broken.dump();
-            const auto result = map::import_map(std::vector<std::string>{"in/map.gltf"}, [&](const std::string& path) -> tl::expected<FileBytes, std::string> {
-                if (path == "in/map.gltf") return bytes_of(text);
-                asked.push_back(path);
-                return FileBytes(100);
-            });
+            const auto result =
+                map::import_map(std::vector<std::string>{"in/map.gltf"},
+                                [&](const std::string& path) -> tl::expected<FileBytes, std::string> {
+                                    if (path == "in/map.gltf")
+                                        return bytes_of(text);
+                                    asked.push_back(path);
+                                    return FileBytes(100);
+                                });
             SCOPED_TRACE(std::string(array) + " " + uri);
             expect_refused(result, {"in/map.gltf", std::string(array) == "images" ? "image 0" : "buffer 0"});
             EXPECT_TRUE(asked.empty()) << asked[0];
@@ -167,10 +214,11 @@ TEST(BadInput, PathsThatLeaveTheFolder) {
 TEST(BadInput, MapPathsThatLeaveTheFolder) {
     for (const char* path : {"../map.gltf", "/etc/passwd", "a/../../map.gltf", ""}) {
         bool asked = false;
-        const auto result = map::import_map(std::vector<std::string>{path}, [&](const std::string&) -> tl::expected<FileBytes, std::string> {
-            asked = true;
-            return FileBytes{};
-        });
+        const auto result = map::import_map(std::vector<std::string>{path},
+                                            [&](const std::string&) -> tl::expected<FileBytes, std::string> {
+                                                asked = true;
+                                                return FileBytes{};
+                                            });
         expect_refused(result, {path});
         EXPECT_FALSE(asked) << path;
     }
@@ -205,7 +253,9 @@ TEST(BadInput, SparseAccessors) {
         expect_broken(parts, [&](Json& j) {
             Json& sparse = j["accessors"][0]["sparse"];
             // Positions replaced by themselves; the indices' view holds 0, 1, 2, 0, 2, 3.
-            sparse = {{"count", 2}, {"indices", {{"bufferView", 3}, {"componentType", gltf_u32}}}, {"values", {{"bufferView", 1}}}};
+            sparse = {{"count", 2},
+                      {"indices", {{"bufferView", 3}, {"componentType", gltf_u32}}},
+                      {"values", {{"bufferView", 1}}}};
             edit(sparse);
         });
     };
@@ -228,7 +278,8 @@ TEST(BadInput, SparseAccessors) {
 
 TEST(BadInput, CompressionThatIsUsedWithoutBeingRequired) {
     expect_broken({"mesh 0, primitive 0", "KHR_draco_mesh_compression"}, [](Json& j) {
-        j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
+        j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+            {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
         j["accessors"][0].erase("bufferView");
     });
 }
@@ -244,7 +295,8 @@ TEST(BadInput, IndexPastTheEnd) {
 }
 
 TEST(BadInput, NotANumber) {
-    for (float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()}) {
+    for (float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                      -std::numeric_limits<float>::infinity()}) {
         GltfBuilder positions, uvs, colours, instances;
         Shape shape = ground(1);
         shape.colours.assign(4, glm::vec4(1));
@@ -268,30 +320,57 @@ TEST(BadInput, NotANumber) {
 TEST(BadInput, Meshes) {
     expect_broken({"mesh 0", "primitives"}, [](Json& j) { j["meshes"][0]["primitives"] = Json::object(); });
     expect_broken({"mesh 0", "primitives"}, [](Json& j) { j["meshes"][0].erase("primitives"); });
-    expect_broken({"mesh 0, primitive 0", "attributes"}, [](Json& j) { j["meshes"][0]["primitives"][0].erase("attributes"); });
-    expect_broken({"mesh 0, primitive 0", "POSITION", "99"}, [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; });
-    expect_broken({"mesh 0, primitive 0", "NORMAL", "-1"}, [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = -1; });
-    expect_broken({"mesh 0, primitive 0", "indices", "99"}, [](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 99; });
-    expect_broken({"mesh 0, primitive 0", "material", "9"}, [](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 9; });
-    expect_broken({"mesh 0, primitive 0", "mode 7"}, [](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; });
-    expect_broken({"mesh 0, primitive 0", "TEXCOORD_0", "3", "4"}, [](Json& j) { j["accessors"][1]["count"] = 3; });
+    expect_broken({"mesh 0, primitive 0", "attributes"},
+                  [](Json& j) { j["meshes"][0]["primitives"][0].erase("attributes"); });
+    expect_broken({"mesh 0, primitive 0", "POSITION", "99"},
+                  [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; });
+    expect_broken({"mesh 0, primitive 0", "NORMAL", "-1"},
+                  [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = -1; });
+    expect_broken({"mesh 0, primitive 0", "indices", "99"},
+                  [](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 99; });
+    expect_broken({"mesh 0, primitive 0", "material", "9"},
+                  [](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 9; });
+    expect_broken({"mesh 0, primitive 0", "mode 7"},
+                  [](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; });
+    expect_broken({"mesh 0, primitive 0", "TEXCOORD_0", "3", "4"},
+                  [](Json& j) { j["accessors"][1]["count"] = 3; });
     expect_broken({"meshes"}, [](Json& j) { j["meshes"] = "x"; });
     expect_broken({"mesh 0"}, [](Json& j) { j["meshes"][0] = Json::array(); });
 }
 
 TEST(BadInput, MaterialsAndTextures) {
-    expect_broken({"material 0", "baseColorFactor"}, [](Json& j) { j["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1}; });
-    expect_broken({"material 0", "baseColorFactor", "2"}, [](Json& j) { j["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 2, 1}; });
-    expect_broken({"material 0", "baseColorFactor"}, [](Json& j) { j["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, -1, 1}; });
-    expect_broken({"material 0", "textures", "9"}, [](Json& j) { j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 9; });
-    expect_broken({"material 0", "index"}, [](Json& j) { j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"].erase("index"); });
+    expect_broken({"material 0", "baseColorFactor"}, [](Json& j) {
+        j["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1};
+    });
+    expect_broken({"material 0", "baseColorFactor", "2"}, [](Json& j) {
+        j["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 2, 1};
+    });
+    expect_broken({"material 0", "baseColorFactor"}, [](Json& j) {
+        j["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, -1, 1};
+    });
+    expect_broken({"material 0", "textures", "9"}, [](Json& j) {
+        j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 9;
+    });
+    expect_broken({"material 0", "index"}, [](Json& j) {
+        j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"].erase("index");
+    });
     expect_broken({"material 0", "FOG"}, [](Json& j) { j["materials"][0]["alphaMode"] = "FOG"; });
-    expect_broken({"material 0", "alphaCutoff"}, [](Json& j) { j["materials"][0].update({{"alphaMode", "MASK"}, {"alphaCutoff", "x"}}); });
+    expect_broken({"material 0", "alphaCutoff"}, [](Json& j) {
+        j["materials"][0].update({{"alphaMode", "MASK"}, {"alphaCutoff", "x"}});
+    });
     expect_broken({"material 0", "doubleSided"}, [](Json& j) { j["materials"][0]["doubleSided"] = 1; });
-    for (const char* transform : {R"({"offset": [1]})", R"({"scale": ["a", 1]})", R"({"rotation": "x"})", R"({"offset": [1e39, 0]})", R"({"scale": [1, 1e300]})", R"({"offset": 3})"}) {
-        expect_broken({"material 0", "KHR_texture_transform"}, [&](Json& j) { j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = Json::parse(transform); });
+    for (const char* transform :
+         {R"({"offset": [1]})", R"({"scale": ["a", 1]})", R"({"rotation": "x"})", R"({"offset": [1e39, 0]})",
+          R"({"scale": [1, 1e300]})", R"({"offset": 3})"}) {
+        expect_broken({"material 0", "KHR_texture_transform"}, [&](Json& j) {
+            j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]
+             ["KHR_texture_transform"] = Json::parse(transform);
+        });
     }
-    expect_broken({"material 0", "texCoord"}, [](Json& j) { j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"]["texCoord"] = 1e300; });
+    expect_broken({"material 0", "texCoord"}, [](Json& j) {
+        j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"]
+         ["texCoord"] = 1e300;
+    });
     expect_broken({"texture 0", "images", "9"}, [](Json& j) { j["textures"][0]["source"] = 9; });
     expect_broken({"texture 0", "samplers", "9"}, [](Json& j) { j["textures"][0]["sampler"] = 9; });
     expect_broken({"texture 0"}, [](Json& j) { j["textures"][0].erase("source"); });
@@ -300,8 +379,12 @@ TEST(BadInput, MaterialsAndTextures) {
     expect_broken({"image 0", "gone.png"}, [](Json& j) { j["images"][0] = {{"uri", "gone.png"}}; });
     expect_broken({"image 0", "PNG"}, [](Json& j) { j["images"][0]["bufferView"] = 1; });
     expect_broken({"image 0"}, [](Json& j) { j["images"][0] = {{"uri", "data:image/png;base64,"}}; });
-    expect_broken({"image 0", "PNG"}, [](Json& j) { j["images"][0] = {{"uri", "data:image/webp;base64,UklGRg=="}}; });
-    expect_broken({"image 0"}, [](Json& j) { j["images"][0] = {{"uri", "data:text/plain," + std::string(5000, 'x')}}; });
+    expect_broken({"image 0", "PNG"}, [](Json& j) {
+        j["images"][0] = {{"uri", "data:image/webp;base64,UklGRg=="}};
+    });
+    expect_broken({"image 0"}, [](Json& j) {
+        j["images"][0] = {{"uri", "data:text/plain," + std::string(5000, 'x')}};
+    });
 }
 
 TEST(BadInput, ImageThatLeavesItsBuffer) {
@@ -321,7 +404,9 @@ TEST(BadInput, BrokenPictures) {
         return import_files({{"map.gltf", bytes_of(b.gltf())}, {"x.png", bytes}}, {"map.gltf"});
     };
     expect_accepted(import_picture(png));
-    for (std::size_t size = 0; size + 12 + 16 < png.size(); ++size) expect_refused(import_picture({png.begin(), png.begin() + static_cast<std::ptrdiff_t>(size)}), {"map.gltf", "image 0", "x.png"});
+    for (std::size_t size = 0; size + 12 + 16 < png.size(); ++size)
+        expect_refused(import_picture({png.begin(), png.begin() + static_cast<std::ptrdiff_t>(size)}),
+                       {"map.gltf", "image 0", "x.png"});
     FileBytes huge = png;  // says 16777220 x 16777220 pixels
     huge[16] = huge[20] = 1;
     expect_refused(import_picture(huge), {"map.gltf", "image 0", "x.png"});
@@ -338,9 +423,16 @@ TEST(BadInput, Nodes) {
     expect_broken({"node 0"}, [](Json& j) { j["nodes"][0] = 7; });
     expect_broken({"node 1", "name"}, [](Json& j) { j["nodes"][1]["name"] = 7; });
     expect_broken({"node 1", "matrix"}, [](Json& j) { j["nodes"][1]["matrix"] = {1, 2}; });
-    expect_broken({"node 1", "affine"}, [](Json& j) { j["nodes"][1]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; });
-    expect_broken({"node 1", "affine"}, [](Json& j) { j["nodes"][1]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0}; });
-    expect_broken({"node 1", "matrix"}, [](Json& j) { j["nodes"][1].update({{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}, {"scale", {1, 1, 1}}}); });
+    expect_broken({"node 1", "affine"}, [](Json& j) {
+        j["nodes"][1]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    });
+    expect_broken({"node 1", "affine"}, [](Json& j) {
+        j["nodes"][1]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0};
+    });
+    expect_broken({"node 1", "matrix"}, [](Json& j) {
+        j["nodes"][1].update(
+            {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}, {"scale", {1, 1, 1}}});
+    });
     expect_broken({"node 1", "translation"}, [](Json& j) { j["nodes"][1]["translation"] = {1, 2}; });
     expect_broken({"node 1", "translation"}, [](Json& j) { j["nodes"][1]["translation"] = {1, 2, "3"}; });
     expect_broken({"node 1", "translation"}, [](Json& j) { j["nodes"][1]["translation"] = {1, 2, nullptr}; });
@@ -355,10 +447,12 @@ TEST(BadInput, Nodes) {
 TEST(BadInput, VerticesThatOverflowInTheWorld) {
     // 3e38 * 2 - 3e38 * 2 is NaN in float, and the bounds of the other corners are fine.
     GltfBuilder b;
-    b.add_node({.mesh = b.add_mesh(triangle({3e38f, 3e38f, 0}, {1, 0, 0}, {0, 1, 0})), .matrix = {2, 2, 0, 0, -2, 2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}});
+    b.add_node({.mesh = b.add_mesh(triangle({3e38f, 3e38f, 0}, {1, 0, 0}, {0, 1, 0})),
+                .matrix = {2, 2, 0, 0, -2, 2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}});
     expect_refused(b.import(), {"map.gltf", "node 0"});
     GltfBuilder flat;
-    flat.add_node({.mesh = flat.add_mesh(triangle({3e38f, 3e38f, 0}, {1, 0, 0}, {0, 1, 0})), .matrix = {2, 0, 0, 0, -2, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}});
+    flat.add_node({.mesh = flat.add_mesh(triangle({3e38f, 3e38f, 0}, {1, 0, 0}, {0, 1, 0})),
+                   .matrix = {2, 0, 0, 0, -2, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}});
     expect_refused(flat.import(), {"map.gltf", "node 0"});
 }
 
@@ -368,18 +462,26 @@ TEST(BadInput, ProbesVolumesAndLightsFarAway) {
         b.add_node({.mesh = b.add_mesh(ground(1)), .translation = glm::dvec3(1e20, 0, 0), .role = role});
         expect_refused(b.import(), {"map.gltf", "node 0", "10^9"});
     }
-    // A probe beyond the last sector that has a number: it would have wrapped around into another (found by a review).
+    // A probe beyond the last sector that has a number: it would have wrapped around into another (found by a
+    // review).
     GltfBuilder beyond;
     beyond.add_node({.translation = glm::dvec3(4'194'314, 1, -10), .role = "probe"});
     expect_refused(beyond.import(), {"map.gltf", "node 0", "4194314 m from the origin"});
     GltfBuilder b;
-    b.add_node({.light = b.add_light(Json::parse(R"({"type": "point"})")), .translation = glm::dvec3(1e20, 0, 0)});
+    b.add_node(
+        {.light = b.add_light(Json::parse(R"({"type": "point"})")), .translation = glm::dvec3(1e20, 0, 0)});
     expect_refused(b.import(), {"map.gltf", "node 0", "10^9"});
 }
 
 TEST(BadInput, CyclicNodes) {
-    expect_broken({"node", "ancestor"}, [](Json& j) { j["nodes"] = Json::parse(R"([{"children": [0]}])"); j["scenes"] = Json::array(); j.erase("scene"); });
-    expect_broken({"node", "ancestor"}, [](Json& j) { j["nodes"] = Json::parse(R"([{"children": [1]}, {"children": [2]}, {"children": [0]}])"); });
+    expect_broken({"node", "ancestor"}, [](Json& j) {
+        j["nodes"] = Json::parse(R"([{"children": [0]}])");
+        j["scenes"] = Json::array();
+        j.erase("scene");
+    });
+    expect_broken({"node", "ancestor"}, [](Json& j) {
+        j["nodes"] = Json::parse(R"([{"children": [1]}, {"children": [2]}, {"children": [0]}])");
+    });
     expect_broken({"node 1", "parents"}, [](Json& j) { j["nodes"][0]["children"] = {1, 1}; });
     expect_broken({"node 1", "parents"}, [](Json& j) { j["nodes"].push_back({{"children", {1}}}); });
 }
@@ -387,7 +489,9 @@ TEST(BadInput, CyclicNodes) {
 TEST(BadInput, Scenes) {
     expect_broken({"scene", "5"}, [](Json& j) { j["scene"] = 5; });
     expect_broken({"scene 0", "nodes", "9"}, [](Json& j) { j["scenes"][0]["nodes"] = {9}; });
-    expect_broken({"scene 0", "node 1"}, [](Json& j) { j["scenes"][0]["nodes"] = {0, 1}; });  // 1 is 0's child, and would stand there twice
+    expect_broken({"scene 0", "node 1"}, [](Json& j) {
+        j["scenes"][0]["nodes"] = {0, 1};
+    });  // 1 is 0's child, and would stand there twice
     expect_broken({"scene 0", "node 0"}, [](Json& j) { j["scenes"][0]["nodes"] = {0, 0}; });
     expect_broken({"scene 0", "name"}, [](Json& j) { j["scenes"][0]["name"] = 42; });
 }
@@ -401,7 +505,8 @@ TEST(BadInput, Instancing) {
         b.add_values(std::vector<glm::vec4>(3), gltf_f32, "VEC4");  // accessor 4
         b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = Json::parse(attributes);
         const auto result = b.import();
-        for (const std::string& part : parts) expect_refused(result, {"map.gltf", part});
+        for (const std::string& part : parts)
+            expect_refused(result, {"map.gltf", part});
     };
     broken({"node 0", "attributes"}, "{}");
     broken({"node 0", "trees", "none of TRANSLATION"}, R"({"attributes": {}})");
@@ -426,7 +531,9 @@ TEST(BadInput, NamesCannotBreakTheSentence) {
 
 TEST(BadInput, SecondFileIsNamed) {
     const GltfBuilder b = sound();
-    expect_refused(import_files({{"good.gltf", bytes_of(b.gltf())}, {"bad.gltf", bytes_of("{}")}}, {"good.gltf", "bad.gltf"}), {"bad.gltf: "});
+    expect_refused(import_files({{"good.gltf", bytes_of(b.gltf())}, {"bad.gltf", bytes_of("{}")}},
+                                {"good.gltf", "bad.gltf"}),
+                   {"bad.gltf: "});
 }
 
 // Small files that ask for much work: refused or done, but soon and in bounded memory.
@@ -437,7 +544,8 @@ TEST(Hostile, AccessorWithoutViewCannotBeHuge) {
     positions.json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
     expect_refused(positions.import(), {"map.gltf", "accessor 0", "100000000"});
     instances.add_instances(instances.add_mesh(ground(1)), {{0, 0, 0}});
-    instances.json["accessors"].back() = {{"componentType", gltf_f32}, {"type", "VEC3"}, {"count", 100000000}};
+    instances.json["accessors"].back() = {
+        {"componentType", gltf_f32}, {"type", "VEC3"}, {"count", 100000000}};
     expect_refused(instances.import(), {"map.gltf", "accessor 3", "100000000"});
 }
 
@@ -447,14 +555,16 @@ TEST(Hostile, PrimitivesThatShareABigAccessorAreLimited) {
     big.positions.assign(300000, glm::vec3(1));
     b.place(big);
     const Json primitive = b.json["meshes"][0]["primitives"][0];
-    for (int n = 0; n < 30000; ++n) b.json["meshes"][0]["primitives"].push_back(primitive);
+    for (int n = 0; n < 30000; ++n)
+        b.json["meshes"][0]["primitives"].push_back(primitive);
     expect_refused(b.import(), {"map.gltf", "limit"});
 }
 
 TEST(Hostile, InstancesOfABigMeshAreLimited) {
     GltfBuilder b;
     Shape big;
-    for (int n = 0; n < 300000; ++n) big.positions.emplace_back(n, n % 7, n % 3);
+    for (int n = 0; n < 300000; ++n)
+        big.positions.emplace_back(n, n % 7, n % 3);
     b.add_instances(b.add_mesh(big), std::vector<glm::vec3>(300000));
     expect_refused(b.import(), {"map.gltf", "node 0", "limit"});
 }
@@ -462,7 +572,8 @@ TEST(Hostile, InstancesOfABigMeshAreLimited) {
 TEST(Hostile, VolumesOfABigMeshAreLimited) {
     GltfBuilder b;
     Shape big;
-    for (int n = 0; n < 300000; ++n) big.positions.emplace_back(n, n % 7, n % 3);
+    for (int n = 0; n < 300000; ++n)
+        big.positions.emplace_back(n, n % 7, n % 3);
     b.add_instances(b.add_mesh(big), std::vector<glm::vec3>(1000), {.role = "no_probes"});
     expect_refused(b.import(), {"map.gltf", "node 0", "limit"});
 }
@@ -484,7 +595,8 @@ class FolderSource : public ::testing::Test {
   protected:
     void SetUp() override { std::filesystem::create_directories(folder_ / "sub"); }
     void TearDown() override { std::filesystem::remove_all(folder_); }
-    const std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("drtv_map_test_" + std::to_string(getpid()));
+    const std::filesystem::path folder_ =
+        std::filesystem::temp_directory_path() / ("drtv_map_test_" + std::to_string(getpid()));
 };
 
 TEST_F(FolderSource, GivesTheBytes) {

@@ -6,7 +6,9 @@ namespace drtv::test {
 namespace {
 
 // A bright material by default.
-MaterialSource snow(float albedo = 0.96f) { return {.colour = {0.5f, albedo, 0.5f, 1}, .name = "snow"}; }
+MaterialSource snow(float albedo = 0.96f) {
+    return {.colour = {0.5f, albedo, 0.5f, 1}, .name = "snow"};
+}
 
 Shape tinted(float shade) {
     Shape shape = ground(1);
@@ -14,7 +16,9 @@ Shape tinted(float shade) {
     return shape;
 }
 
-std::vector<std::string> warnings_of(const GltfBuilder& b) { return expect_accepted(b.import()).warnings; }
+std::vector<std::string> warnings_of(const GltfBuilder& b) {
+    return expect_accepted(b.import()).warnings;
+}
 
 std::vector<std::string> warnings_of(const Shape& shape, const MaterialSource& material) {
     GltfBuilder b;
@@ -25,7 +29,8 @@ std::vector<std::string> warnings_of(const Shape& shape, const MaterialSource& m
 TEST(BrightnessWarning, NamesFileMaterialAndValue) {
     const auto warnings = warnings_of(ground(1), snow());
     ASSERT_EQ(warnings.size(), 1u);
-    for (const char* part : {"map.gltf", "material 0 ('snow')", "0.96", "0.95"}) EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
+    for (const char* part : {"map.gltf", "material 0 ('snow')", "0.96", "0.95"})
+        EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
 }
 
 TEST(BrightnessWarning, BeginsAboveTheLimit) {
@@ -65,7 +70,7 @@ TEST(BrightnessWarning, SparesWhatAPictureDarkens) {
     };
     EXPECT_EQ(with_texels({200, 200, 200, 255, 9, 9, 9, 255}, {}), 0u);
     EXPECT_EQ(with_texels({200, 255, 200, 255, 9, 9, 9, 255}, {}), 1u);
-    EXPECT_EQ(with_texels({200, 255, 200, 0, 9, 9, 9, 255}, {}), 1u);  // alpha has no say
+    EXPECT_EQ(with_texels({200, 255, 200, 0, 9, 9, 9, 255}, {}), 1u);   // alpha has no say
     EXPECT_EQ(with_texels({200, 255, 200, 0, 9, 9, 9, 255}, 0.5), 0u);  // what is cut away is not seen
 }
 
@@ -74,7 +79,8 @@ TEST(BrightnessWarning, ComesOnceHoweverManyThingsWearTheMaterial) {
     const int bright = b.add_material(snow());
     const int mesh = b.add_mesh(ground(1), bright);
     b.add_primitive(mesh, ground(2), bright);
-    for (int n = 0; n < 3; ++n) b.add_node({.mesh = mesh, .translation = glm::dvec3(9 * n, 0, 0)});
+    for (int n = 0; n < 3; ++n)
+        b.add_node({.mesh = mesh, .translation = glm::dvec3(9 * n, 0, 0)});
     b.place(ground(3), "", bright);
     EXPECT_EQ(warnings_of(b).size(), 1u);
     b.place(ground(4), "", b.add_material(snow(1)));

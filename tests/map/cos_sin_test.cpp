@@ -28,8 +28,8 @@ TEST(CosSin, IsExactWhereItCanBe) {
     EXPECT_EQ(map::cos_sin(1.5707963267948966).y, 1);
 }
 
-// The table of sRGB comes from the C library's power, in double, and is rounded to float: no entry lies so near to a tie that an
-// error of that power of a hundred times its last bit would show.
+// The table of sRGB comes from the C library's power, in double, and is rounded to float: no entry lies so
+// near to a tie that an error of that power of a hundred times its last bit would show.
 TEST(LinearFromSrgb, IsTheSameWithEveryCLibrary) {
     for (int n = 0; n < 256; ++n) {
         const double s = n / 255.0, linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);

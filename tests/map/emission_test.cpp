@@ -23,7 +23,9 @@ struct Lamp {
         const Map map = expect_accepted(import());
         return map.materials.at(map.meshes.at(0).primitives.at(0).material);
     }
-    void set_strength(const Json& strength) { json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength; }
+    void set_strength(const Json& strength) {
+        json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
+    }
 };
 
 TEST(Emission, IsFactorTimesStrength) {
@@ -78,7 +80,8 @@ TEST(Emission, OutOfRangeTogetherIsRefused) {
 TEST(Emission, OfTheWrongTypeIsRefused) {
     Lamp lamp;
     lamp.set_strength("bright");
-    expect_refused(lamp.import(), {"map.gltf", "material 0", "KHR_materials_emissive_strength", "emissiveStrength"});
+    expect_refused(lamp.import(),
+                   {"map.gltf", "material 0", "KHR_materials_emissive_strength", "emissiveStrength"});
     Lamp pair;
     pair.json["emissiveFactor"] = {1, 1};
     expect_refused(pair.import(), {"map.gltf", "material 0", "emissiveFactor"});
@@ -93,15 +96,18 @@ TEST(EmissionTexture, HasItsOwnSetOfCoordinates) {
     lamp.json["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", picture}};
     lamp.json["emissiveFactor"] = {1, 1, 1};
     lamp.json["emissiveTexture"] = {{"index", picture}, {"texCoord", 1}};
-    lamp.b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = lamp.b.add_values(std::vector<glm::vec2>{{7, 8}, {9, 8}, {9, 6}, {7, 6}}, gltf_f32, "VEC2");
-    const std::vector<glm::vec2> first = {{0, 1}, {1, 1}, {1, 0}, {0, 0}}, second = {{7, 8}, {9, 8}, {9, 6}, {7, 6}};
+    lamp.b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
+        lamp.b.add_values(std::vector<glm::vec2>{{7, 8}, {9, 8}, {9, 6}, {7, 6}}, gltf_f32, "VEC2");
+    const std::vector<glm::vec2> first = {{0, 1}, {1, 1}, {1, 0}, {0, 0}},
+                                 second = {{7, 8}, {9, 8}, {9, 6}, {7, 6}};
     {
         const Map map = expect_accepted(lamp.import());
         EXPECT_EQ(map.meshes.at(0).primitives.at(0).uvs, first);
         EXPECT_EQ(map.meshes.at(0).primitives.at(0).emission_uvs, second);
     }
     // KHR_texture_transform has the last word on the set, and each texture its own transform.
-    lamp.json["emissiveTexture"]["extensions"]["KHR_texture_transform"] = {{"texCoord", 0}, {"offset", {0.25, 0.5}}, {"scale", {2, 3}}};
+    lamp.json["emissiveTexture"]["extensions"]["KHR_texture_transform"] = {
+        {"texCoord", 0}, {"offset", {0.25, 0.5}}, {"scale", {2, 3}}};
     const Map map = expect_accepted(lamp.import());
     EXPECT_EQ(map.meshes.at(0).primitives.at(0).emission_uvs, first);
     const Material& material = map.materials.at(map.meshes.at(0).primitives.at(0).material);
@@ -122,7 +128,8 @@ TEST(EmissionTexture, WithoutCoordinatesShowsItsFirstTexel) {
 
 TEST(EmissionTexture, WithoutFactorIsNotEvenDecoded) {
     Lamp lamp;
-    lamp.b.json["images"] = Json::array({{{"bufferView", lamp.b.add_view(bytes_of("no picture at all"))}, {"mimeType", "image/png"}}});
+    lamp.b.json["images"] = Json::array(
+        {{{"bufferView", lamp.b.add_view(bytes_of("no picture at all"))}, {"mimeType", "image/png"}}});
     lamp.b.json["textures"] = Json::parse(R"([{"source": 0}])");
     lamp.json["emissiveTexture"] = {{"index", 0}};
     const Map map = expect_accepted(lamp.import());
@@ -136,7 +143,8 @@ TEST(EmissionTexture, WithoutFactorIsNotEvenDecoded) {
 TEST(EmissionTexture, IsAveragedOverAllOfItsTexels) {
     Lamp lamp;
     const int picture = lamp.b.add_texture({2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
-    lamp.json.update({{"alphaMode", "MASK"}, {"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", {{"index", picture}}}});
+    lamp.json.update(
+        {{"alphaMode", "MASK"}, {"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", {{"index", picture}}}});
     lamp.json["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", picture}};
     const Map map = expect_accepted(lamp.import());
     const Material& material = map.materials.at(map.meshes.at(0).primitives.at(0).material);

@@ -1,5 +1,6 @@
-// A small language for glTF in tests: a case is three to ten lines. Everything is in glTF's own axes (y up); what
-// is added gets the index that glTF knows it by. `json` is open, so that a test can break or extend anything.
+// A small language for glTF in tests: a case is three to ten lines. Everything is in glTF's own axes (y up);
+// what is added gets the index that glTF knows it by. `json` is open, so that a test can break or extend
+// anything.
 //
 //     GltfBuilder b;
 //     const int red = b.add_material({.colour = {1, 0, 0, 1}});
@@ -32,7 +33,8 @@ using Json = nlohmann::json;
 using map::FileBytes;
 
 // glTF's names for numbers.
-inline constexpr int gltf_i8 = 5120, gltf_u8 = 5121, gltf_i16 = 5122, gltf_u16 = 5123, gltf_u32 = 5125, gltf_f32 = 5126;
+inline constexpr int gltf_i8 = 5120, gltf_u8 = 5121, gltf_i16 = 5122, gltf_u16 = 5123, gltf_u32 = 5125,
+                     gltf_f32 = 5126;
 inline constexpr int gltf_triangles = 4, gltf_strip = 5, gltf_fan = 6;
 
 // Triangles with what may hang on their vertices; empty indices mean "as they stand".
@@ -44,9 +46,11 @@ struct Shape {
 };
 
 [[nodiscard]] Shape box(const glm::vec3& low, const glm::vec3& high);  // 12 triangles, fronts outwards
-// Corners counter-clockwise seen from the front; uvs (0,1) (1,1) (1,0) (0,0), so that a picture stands upright.
+// Corners counter-clockwise seen from the front; uvs (0,1) (1,1) (1,0) (0,0), so that a picture stands
+// upright.
 [[nodiscard]] Shape quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d);
-[[nodiscard]] Shape ground(float half_size_m, float height_m = 0);  // one quad around the origin, front upwards
+[[nodiscard]] Shape ground(float half_size_m,
+                           float height_m = 0);  // one quad around the origin, front upwards
 [[nodiscard]] Shape triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);  // not indexed
 // The glTF position of a point given in world axes.
 [[nodiscard]] glm::vec3 gltf_from_world(const glm::vec3& world);
@@ -80,7 +84,8 @@ struct NodeSource {
 using Files = std::map<std::string, FileBytes>;
 
 [[nodiscard]] map::FileSource source_of(Files files);
-[[nodiscard]] tl::expected<map::Map, std::string> import_files(const Files& files, const std::vector<std::string>& paths);
+[[nodiscard]] tl::expected<map::Map, std::string> import_files(const Files& files,
+                                                               const std::vector<std::string>& paths);
 [[nodiscard]] FileBytes bytes_of(std::string_view text);
 // A GLB of these chunks, padded as the format asks; no BIN chunk when `bin` is empty.
 [[nodiscard]] FileBytes glb_of(const std::string& json, std::span<const std::uint8_t> bin);
@@ -94,14 +99,21 @@ class GltfBuilder {
     int add_view(std::span<const std::uint8_t> bytes, int stride_bytes = 0);
     template <class Value>
     int add_view(const std::vector<Value>& values, int stride_bytes = 0) {
-        return add_view(std::span(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(Value)), stride_bytes);
+        return add_view(
+            std::span(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(Value)),
+            stride_bytes);
     }
-    int add_accessor(int view, int component_type, const std::string& type, std::size_t count, bool normalized = false);
+    int add_accessor(int view, int component_type, const std::string& type, std::size_t count,
+                     bool normalized = false);
     template <class Value>
-    int add_values(const std::vector<Value>& values, int component_type, const std::string& type, bool normalized = false) {
+    int add_values(const std::vector<Value>& values, int component_type, const std::string& type,
+                   bool normalized = false) {
         const std::size_t components = type == "SCALAR" ? 1 : static_cast<std::size_t>(type[3] - '0');
-        const std::size_t component_bytes = component_type <= gltf_u8 ? 1 : component_type <= gltf_u16 ? 2 : 4;
-        return add_accessor(add_view(values), component_type, type, values.size() * sizeof(Value) / (components * component_bytes), normalized);
+        const std::size_t component_bytes = component_type <= gltf_u8    ? 1
+                                            : component_type <= gltf_u16 ? 2
+                                                                         : 4;
+        return add_accessor(add_view(values), component_type, type,
+                            values.size() * sizeof(Value) / (components * component_bytes), normalized);
     }
 
     int add_image(const Picture& picture);                       // inside the buffer
@@ -115,15 +127,21 @@ class GltfBuilder {
     // EXT_mesh_gpu_instancing, by translation.
     int add_instances(int mesh, const std::vector<glm::vec3>& translations, const NodeSource& node = {});
     // A node that only places a mesh.
-    int place(const Shape& shape, const std::string& role = "", int material = -1) { return add_node({.mesh = add_mesh(shape, material), .role = role}); }
+    int place(const Shape& shape, const std::string& role = "", int material = -1) {
+        return add_node({.mesh = add_mesh(shape, material), .role = role});
+    }
 
     // The document. Its scene holds all nodes that are nobody's child, unless the test wrote `scenes` itself.
     [[nodiscard]] Json document() const;
-    [[nodiscard]] std::string gltf() const;                            // buffer as data URI
+    [[nodiscard]] std::string gltf() const;                               // buffer as data URI
     [[nodiscard]] std::string gltf(const std::string& buffer_uri) const;  // buffer in a file
     [[nodiscard]] FileBytes glb() const;
-    [[nodiscard]] Files files(const std::string& name = "map.gltf") const { return {{name, bytes_of(gltf())}}; }
-    [[nodiscard]] tl::expected<map::Map, std::string> import() const { return import_files(files(), {"map.gltf"}); }
+    [[nodiscard]] Files files(const std::string& name = "map.gltf") const {
+        return {{name, bytes_of(gltf())}};
+    }
+    [[nodiscard]] tl::expected<map::Map, std::string> import() const {
+        return import_files(files(), {"map.gltf"});
+    }
 
   private:
     int add(const char* array, Json element);

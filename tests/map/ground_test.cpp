@@ -16,11 +16,14 @@ tl::expected<Sectors, std::string> try_sectors(const GltfBuilder& b) {
     return map::sectors_with_ground(expect_accepted(b.import()));
 }
 
-Sectors sectors_of(const GltfBuilder& b) { return expect_accepted(try_sectors(b)); }
+Sectors sectors_of(const GltfBuilder& b) {
+    return expect_accepted(try_sectors(b));
+}
 
 // A horizontal quad over the world rectangle.
 Shape floor_over(float x0, float y0, float x1, float y1, float z = 0) {
-    return quad(gltf_from_world({x0, y0, z}), gltf_from_world({x1, y0, z}), gltf_from_world({x1, y1, z}), gltf_from_world({x0, y1, z}));
+    return quad(gltf_from_world({x0, y0, z}), gltf_from_world({x1, y0, z}), gltf_from_world({x1, y1, z}),
+                gltf_from_world({x0, y1, z}));
 }
 
 Sectors sectors_of(const Shape& shape, const std::string& role = "") {
@@ -33,12 +36,15 @@ Sectors sectors_of(const Shape& shape, const std::string& role = "") {
 Sectors block(int i0, int j0, int i1, int j1) {
     Sectors sectors;
     for (int j = j0; j <= j1; ++j) {
-        for (int i = i0; i <= i1; ++i) sectors.push_back({i, j});
+        for (int i = i0; i <= i1; ++i)
+            sectors.push_back({i, j});
     }
     return sectors;
 }
 
-TEST(Ground, EmptyMapHasNone) { EXPECT_TRUE(sectors_of(GltfBuilder{}).empty()); }
+TEST(Ground, EmptyMapHasNone) {
+    EXPECT_TRUE(sectors_of(GltfBuilder{}).empty());
+}
 
 TEST(Ground, SectorIsHalfOpen) {
     EXPECT_EQ(sectors_of(floor_over(0, 0, 64, 64)), block(0, 0, 0, 0));
@@ -50,34 +56,48 @@ TEST(Ground, SectorIsHalfOpen) {
 }
 
 TEST(Ground, WallOnABorderBelongsToTheEast) {
-    EXPECT_EQ(sectors_of(quad(gltf_from_world({64, 1, 0}), gltf_from_world({64, 5, 0}), gltf_from_world({64, 5, 3}), gltf_from_world({64, 1, 3}))), block(1, 0, 1, 0));
+    EXPECT_EQ(sectors_of(quad(gltf_from_world({64, 1, 0}), gltf_from_world({64, 5, 0}),
+                              gltf_from_world({64, 5, 3}), gltf_from_world({64, 1, 3}))),
+              block(1, 0, 1, 0));
 }
 
 TEST(Ground, BigTriangleCoversItsSectorsOnly) {
     // Right angle at the origin, hypotenuse x + y = 320: sector (i, j) is touched where 64 (i + j) <= 320.
     Sectors expected;
     for (int j = 0; j < 5; ++j) {
-        for (int i = 0; i < 5 && i + j < 5; ++i) expected.push_back({i, j});
+        for (int i = 0; i < 5 && i + j < 5; ++i)
+            expected.push_back({i, j});
     }
-    Sectors found = sectors_of(triangle(gltf_from_world({0.5f, 0.5f, 0}), gltf_from_world({318, 0.5f, 0}), gltf_from_world({0.5f, 318, 0})));
+    Sectors found = sectors_of(triangle(gltf_from_world({0.5f, 0.5f, 0}), gltf_from_world({318, 0.5f, 0}),
+                                        gltf_from_world({0.5f, 318, 0})));
     EXPECT_EQ(found, expected);
     // Its winding does not matter.
-    EXPECT_EQ(sectors_of(triangle(gltf_from_world({0.5f, 0.5f, 0}), gltf_from_world({0.5f, 318, 0}), gltf_from_world({318, 0.5f, 0}))), expected);
+    EXPECT_EQ(sectors_of(triangle(gltf_from_world({0.5f, 0.5f, 0}), gltf_from_world({0.5f, 318, 0}),
+                                  gltf_from_world({318, 0.5f, 0}))),
+              expected);
 }
 
 TEST(Ground, SliverFollowsItsLine) {
     // From (10, 10.5) to (310, 310.5), a metre wide: the diagonal's sectors, and those it cuts a corner of.
-    const Sectors found = sectors_of(triangle(gltf_from_world({10, 10.5f, 0}), gltf_from_world({310, 310.5f, 0}), gltf_from_world({309, 310.5f, 0})));
-    for (const SectorCoordinate& s : found) EXPECT_LE(std::abs(s.i - s.j), 1);
-    for (int n = 0; n < 5; ++n) EXPECT_TRUE(std::ranges::count(found, SectorCoordinate{n, n}) == 1);
+    const Sectors found =
+        sectors_of(triangle(gltf_from_world({10, 10.5f, 0}), gltf_from_world({310, 310.5f, 0}),
+                            gltf_from_world({309, 310.5f, 0})));
+    for (const SectorCoordinate& s : found)
+        EXPECT_LE(std::abs(s.i - s.j), 1);
+    for (int n = 0; n < 5; ++n)
+        EXPECT_TRUE(std::ranges::count(found, SectorCoordinate{n, n}) == 1);
     EXPECT_LE(found.size(), 9u);
 }
 
 TEST(Ground, DiagonalWallFollowsItsLine) {
     // Vertical: seen from above it is a line without area.
-    const Sectors found = sectors_of(quad(gltf_from_world({10, 10.5f, 0}), gltf_from_world({310, 310.5f, 0}), gltf_from_world({310, 310.5f, 4}), gltf_from_world({10, 10.5f, 4})));
-    for (const SectorCoordinate& s : found) EXPECT_LE(std::abs(s.i - s.j), 1);
-    for (int n = 0; n < 5; ++n) EXPECT_TRUE(std::ranges::count(found, SectorCoordinate{n, n}) == 1);
+    const Sectors found =
+        sectors_of(quad(gltf_from_world({10, 10.5f, 0}), gltf_from_world({310, 310.5f, 0}),
+                        gltf_from_world({310, 310.5f, 4}), gltf_from_world({10, 10.5f, 4})));
+    for (const SectorCoordinate& s : found)
+        EXPECT_LE(std::abs(s.i - s.j), 1);
+    for (int n = 0; n < 5; ++n)
+        EXPECT_TRUE(std::ranges::count(found, SectorCoordinate{n, n}) == 1);
 }
 
 TEST(Ground, HoleHasNone) {
@@ -85,18 +105,22 @@ TEST(Ground, HoleHasNone) {
     b.place(floor_over(0, 0, 192, 64));
     b.add_primitive(0, floor_over(0, 128, 192, 192));
     Sectors expected = block(0, 0, 2, 0);
-    for (const SectorCoordinate& s : block(0, 2, 2, 2)) expected.push_back(s);
+    for (const SectorCoordinate& s : block(0, 2, 2, 2))
+        expected.push_back(s);
     EXPECT_EQ(sectors_of(b), expected);
 }
 
 TEST(Ground, CountsInstancesAndTransforms) {
     GltfBuilder b;
-    b.add_instances(b.add_mesh(floor_over(0, 0, 1, 1)), {gltf_from_world({0, 0, 0}), gltf_from_world({640, -640, 0})}, {.scale = glm::dvec3(0.5, 1, 0.5)});
+    b.add_instances(b.add_mesh(floor_over(0, 0, 1, 1)),
+                    {gltf_from_world({0, 0, 0}), gltf_from_world({640, -640, 0})},
+                    {.scale = glm::dvec3(0.5, 1, 0.5)});
     EXPECT_EQ(sectors_of(b), (Sectors{{5, -5}, {0, 0}}));
 }
 
 TEST(Ground, VegetationProbesAndVolumesAreNone) {
-    for (const char* role : {"vegetation", "ignore", "probe", "no_probes", "interior"}) EXPECT_TRUE(sectors_of(box({0, 0, 0}, {9, 9, 9}), role).empty()) << role;
+    for (const char* role : {"vegetation", "ignore", "probe", "no_probes", "interior"})
+        EXPECT_TRUE(sectors_of(box({0, 0, 0}, {9, 9, 9}), role).empty()) << role;
 }
 
 TEST(Ground, BeyondTheLimitsIsRefused) {
@@ -121,7 +145,8 @@ TEST(Ground, TooManySectorsAreRefused) {
     expect_refused(
         [] {
             GltfBuilder b;
-            b.add_node({.mesh = b.add_mesh(ground(1)), .scale = glm::dvec3(600000, 1, 600000), .name = "sea"});
+            b.add_node(
+                {.mesh = b.add_mesh(ground(1)), .scale = glm::dvec3(600000, 1, 600000), .name = "sea"});
             return try_sectors(b);
         }(),
         {"sea", "sectors"});
@@ -135,14 +160,17 @@ TEST(Ground, ManyHugeSliversEndSoon) {
     const float end = 64 * 1000;
     for (int n = 0; n < 20000; ++n) {
         const auto shift = static_cast<float>(n % 100);
-        slivers.positions.insert(slivers.positions.end(), {gltf_from_world({shift, 0, 0}), gltf_from_world({end, end - shift, 0}), gltf_from_world({end, end, 0})});
+        slivers.positions.insert(slivers.positions.end(),
+                                 {gltf_from_world({shift, 0, 0}), gltf_from_world({end, end - shift, 0}),
+                                  gltf_from_world({end, end, 0})});
     }
     b.place(slivers);
     const map::Map map = expect_accepted(b.import());
     const auto start = std::chrono::steady_clock::now();
     const auto sectors = map::sectors_with_ground(map);
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
-    if (!sectors) expect_refused(sectors, {"sector"});
+    if (!sectors)
+        expect_refused(sectors, {"sector"});
 }
 
 }  // namespace

@@ -27,12 +27,15 @@ TEST(Role, ChildrenInheritAndMayOverride) {
     b.add_node({.children = {middle}, .role = "vegetation"});
     const Map map = expect_accepted(b.import());
     ASSERT_EQ(map.objects.size(), 2u);
-    for (const map::Object& object : map.objects) EXPECT_EQ(object.role, object.name == "leaf" ? map::Role::vegetation : map::Role::fixed) << object.name;
+    for (const map::Object& object : map.objects)
+        EXPECT_EQ(object.role, object.name == "leaf" ? map::Role::vegetation : map::Role::fixed)
+            << object.name;
 }
 
 TEST(Role, ProbeStandsAtItsOrigin) {
     GltfBuilder b;
-    const int probe = b.add_node({.mesh = b.add_mesh(ground(1)), .translation = glm::dvec3(1, 2, 3), .name = "here", .role = "probe"});
+    const int probe = b.add_node(
+        {.mesh = b.add_mesh(ground(1)), .translation = glm::dvec3(1, 2, 3), .name = "here", .role = "probe"});
     b.add_node({.translation = glm::dvec3(10, 0, 0), .scale = glm::dvec3(2, 2, 2), .children = {probe}});
     const Map map = expect_accepted(b.import());
     EXPECT_TRUE(map.objects.empty());
@@ -43,13 +46,17 @@ TEST(Role, ProbeStandsAtItsOrigin) {
 
 TEST(Role, VolumesAreInWorldSpace) {
     GltfBuilder b;
-    b.add_node({.mesh = b.add_mesh(triangle({1, 2, 3}, {2, 2, 3}, {1, 3, 3})), .translation = glm::dvec3(10, 20, 30), .name = "hall", .role = "no_probes"});
+    b.add_node({.mesh = b.add_mesh(triangle({1, 2, 3}, {2, 2, 3}, {1, 3, 3})),
+                .translation = glm::dvec3(10, 20, 30),
+                .name = "hall",
+                .role = "no_probes"});
     const Map map = expect_accepted(b.import());
     EXPECT_TRUE(map.objects.empty());
     ASSERT_EQ(map.volumes.size(), 1u);
     EXPECT_EQ(map.volumes[0].kind, map::VolumeKind::no_probes);
     EXPECT_EQ(map.volumes[0].name, "hall");
-    EXPECT_EQ(map.volumes[0].positions, (std::vector<glm::dvec3>{{11, -33, 22}, {12, -33, 22}, {11, -33, 23}}));
+    EXPECT_EQ(map.volumes[0].positions,
+              (std::vector<glm::dvec3>{{11, -33, 22}, {12, -33, 22}, {11, -33, 23}}));
     EXPECT_EQ(map.volumes[0].triangles, (std::vector<glm::uvec3>{{0, 1, 2}}));
 }
 
@@ -76,8 +83,10 @@ TEST(Role, InteriorNamesItsProbeEvenInAnotherFile) {
 
 TEST(Role, InteriorNamingTwoProbesIsRefused) {
     GltfBuilder b;
-    b.add_node({.mesh = b.add_mesh(box({0, 0, 0}, {1, 1, 1})), .name = "room", .role = "interior", .probe = "lamp"});
-    for (int n = 0; n < 2; ++n) b.add_node({.name = "lamp", .role = "probe"});
+    b.add_node(
+        {.mesh = b.add_mesh(box({0, 0, 0}, {1, 1, 1})), .name = "room", .role = "interior", .probe = "lamp"});
+    for (int n = 0; n < 2; ++n)
+        b.add_node({.name = "lamp", .role = "probe"});
     expect_refused(b.import(), {"map.gltf", "room", "lamp", "2"});
 }
 
@@ -102,7 +111,8 @@ TEST(Role, OtherExtrasDoNotMatter) {
 
 TEST(Light, PointIsReadWithItsPlace) {
     GltfBuilder b;
-    const int light = b.add_light(Json::parse(R"({"type": "point", "color": [1, 0.5, 0.25], "intensity": 40, "range": 12, "name": "x"})"));
+    const int light = b.add_light(Json::parse(
+        R"({"type": "point", "color": [1, 0.5, 0.25], "intensity": 40, "range": 12, "name": "x"})"));
     b.add_node({.light = light, .translation = glm::dvec3(1, 2, 3), .name = "lamp"});
     const Map map = expect_accepted(b.import());
     ASSERT_EQ(map.lights.size(), 1u);
@@ -127,7 +137,8 @@ TEST(Light, DefaultsAreTheExtensions) {
 
 TEST(Light, ShinesAlongMinusZOfItsNode) {
     GltfBuilder b;
-    const int spot = b.add_light(Json::parse(R"({"type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}})"));
+    const int spot = b.add_light(
+        Json::parse(R"({"type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}})"));
     b.add_node({.light = spot});
     Map map = expect_accepted(b.import());
     EXPECT_EQ(map.lights.at(0).kind, map::LightKind::spot);
@@ -136,7 +147,9 @@ TEST(Light, ShinesAlongMinusZOfItsNode) {
     EXPECT_EQ(map.lights[0].outer_cone_radians, 0.5f);
     // A quarter turn about -x: it shines down, whatever the scale.
     b.json["nodes"] = Json::array();
-    b.add_node({.light = spot, .rotation = glm::dvec4(-std::numbers::sqrt2 / 2, 0, 0, std::numbers::sqrt2 / 2), .scale = glm::dvec3(3, 4, 5)});
+    b.add_node({.light = spot,
+                .rotation = glm::dvec4(-std::numbers::sqrt2 / 2, 0, 0, std::numbers::sqrt2 / 2),
+                .scale = glm::dvec3(3, 4, 5)});
     map = expect_accepted(b.import());
     expect_near(map.lights.at(0).direction, {0, 0, -1}, rounding);
 }
@@ -159,13 +172,19 @@ TEST(Light, BadOnesAreRefused) {
         b.add_node({.light = b.add_light(Json::parse(text)), .name = "lamp"});
         return b.import();
     };
-    for (const char* text : {R"({"type": "area"})", R"({"type": "point", "intensity": -1})", R"({"type": "point", "intensity": 1e39})", R"({"type": "point", "range": -1})",
-                             R"({"type": "point", "color": [1, 1e39, 0]})", R"({"type": "point", "color": [1, -1, 0]})", R"({"type": "spot", "spot": {"outerConeAngle": 1e39}})",
-                             R"({"type": "spot", "spot": {"innerConeAngle": 0.5, "outerConeAngle": 0.25}})", R"({"type": "spot", "spot": {"innerConeAngle": -1}})"}) {
+    for (const char* text :
+         {R"({"type": "area"})", R"({"type": "point", "intensity": -1})",
+          R"({"type": "point", "intensity": 1e39})", R"({"type": "point", "range": -1})",
+          R"({"type": "point", "color": [1, 1e39, 0]})", R"({"type": "point", "color": [1, -1, 0]})",
+          R"({"type": "spot", "spot": {"outerConeAngle": 1e39}})",
+          R"({"type": "spot", "spot": {"innerConeAngle": 0.5, "outerConeAngle": 0.25}})",
+          R"({"type": "spot", "spot": {"innerConeAngle": -1}})"}) {
         SCOPED_TRACE(text);
         expect_refused(import_light(text), {"map.gltf", "light 0"});
     }
-    for (const char* text : {"{}", "3", "[]", R"({"type": 5})", R"({"type": "spot"})", R"({"type": "point", "color": [1]})", R"({"type": "point", "intensity": "high"})"}) {
+    for (const char* text :
+         {"{}", "3", "[]", R"({"type": 5})", R"({"type": "spot"})", R"({"type": "point", "color": [1]})",
+          R"({"type": "point", "intensity": "high"})"}) {
         SCOPED_TRACE(text);
         expect_refused(import_light(text), {"map.gltf", "light 0"});
     }

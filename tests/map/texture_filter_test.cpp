@@ -29,7 +29,8 @@ double linear_of(std::uint8_t byte) {
     return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
-Texture texture_of(std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba, Coverage coverage = Coverage::whole, float cutoff = 0) {
+Texture texture_of(std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba,
+                   Coverage coverage = Coverage::whole, float cutoff = 0) {
     Texture texture;
     texture.width = width;
     texture.height = height;
@@ -40,9 +41,11 @@ Texture texture_of(std::uint32_t width, std::uint32_t height, std::vector<std::u
     return texture;
 }
 
-Texture noise(std::mt19937& random, std::uint32_t width, std::uint32_t height, Coverage coverage, float cutoff) {
+Texture noise(std::mt19937& random, std::uint32_t width, std::uint32_t height, Coverage coverage,
+              float cutoff) {
     std::vector<std::uint8_t> rgba(std::size_t{width} * height * 4);
-    for (std::uint8_t& byte : rgba) byte = static_cast<std::uint8_t>(random());
+    for (std::uint8_t& byte : rgba)
+        byte = static_cast<std::uint8_t>(random());
     return texture_of(width, height, std::move(rgba), coverage, cutoff);
 }
 
@@ -51,23 +54,38 @@ glm::dvec4 mean_of(const Texture& texture) {
     glm::dvec4 sum(0);
     for (std::size_t n = 0; n < texture.rgba.size(); n += 4) {
         const double alpha = texture.rgba[n + 3] / 255.0;
-        const double there = texture.coverage == Coverage::whole ? 1 : texture.coverage == Coverage::alpha ? alpha : alpha >= double{texture.cutoff} ? 1 : 0;
-        sum += glm::dvec4(linear_of(texture.rgba[n]), linear_of(texture.rgba[n + 1]), linear_of(texture.rgba[n + 2]), 1) * there;
+        const double there = texture.coverage == Coverage::whole   ? 1
+                             : texture.coverage == Coverage::alpha ? alpha
+                             : alpha >= double{texture.cutoff}     ? 1
+                                                                   : 0;
+        sum += glm::dvec4(linear_of(texture.rgba[n]), linear_of(texture.rgba[n + 1]),
+                          linear_of(texture.rgba[n + 2]), 1) *
+               there;
     }
     return sum / static_cast<double>(texture.rgba.size() / 4);
 }
 
 glm::dvec4 mean_of(const MipLevel& mip) {
     glm::dvec4 sum(0);
-    for (std::size_t n = 0; n < mip.rgba.size(); n += 4) sum += glm::dvec4(mip.rgba[n], mip.rgba[n + 1], mip.rgba[n + 2], mip.rgba[n + 3]) / 65535.0;
+    for (std::size_t n = 0; n < mip.rgba.size(); n += 4)
+        sum += glm::dvec4(mip.rgba[n], mip.rgba[n + 1], mip.rgba[n + 2], mip.rgba[n + 3]) / 65535.0;
     return sum / static_cast<double>(mip.rgba.size() / 4);
 }
 
 TEST(Prefilter, EveryMipKeepsTheMean) {
     std::mt19937 random(1);
-    for (const auto& [width, height] : {std::pair{5u, 3u}, {7u, 1u}, {1u, 7u}, {2u, 2u}, {8u, 8u}, {6u, 4u}, {13u, 9u}, {31u, 2u}, {33u, 17u}}) {
+    for (const auto& [width, height] : {std::pair{5u, 3u},
+                                        {7u, 1u},
+                                        {1u, 7u},
+                                        {2u, 2u},
+                                        {8u, 8u},
+                                        {6u, 4u},
+                                        {13u, 9u},
+                                        {31u, 2u},
+                                        {33u, 17u}}) {
         for (const Coverage coverage : {Coverage::whole, Coverage::alpha, Coverage::cutoff}) {
-            SCOPED_TRACE(testing::Message() << width << " x " << height << ", coverage " << static_cast<int>(coverage));
+            SCOPED_TRACE(testing::Message()
+                         << width << " x " << height << ", coverage " << static_cast<int>(coverage));
             const Texture texture = noise(random, width, height, coverage, 0.401f);
             const glm::dvec4 mean = mean_of(texture);
             std::uint32_t w = width, h = height;
@@ -75,18 +93,23 @@ TEST(Prefilter, EveryMipKeepsTheMean) {
                 w = std::max(1u, w / 2), h = std::max(1u, h / 2);
                 EXPECT_EQ(std::pair(mip.width, mip.height), std::pair(w, h));
                 ASSERT_EQ(mip.rgba.size(), std::size_t{w} * h * 4);
-                for (glm::length_t k = 0; k < 4; ++k) EXPECT_NEAR(mean_of(mip)[k], mean[k], mip_tolerance) << "component " << k << " of " << w << " x " << h;
+                for (glm::length_t k = 0; k < 4; ++k)
+                    EXPECT_NEAR(mean_of(mip)[k], mean[k], mip_tolerance)
+                        << "component " << k << " of " << w << " x " << h;
             }
             EXPECT_EQ(std::pair(w, h), std::pair(1u, 1u));
         }
     }
 }
 
-TEST(Prefilter, OneTexelHasNoMips) { EXPECT_TRUE(texture_of(1, 1, {1, 2, 3, 4}).mips.empty()); }
+TEST(Prefilter, OneTexelHasNoMips) {
+    EXPECT_TRUE(texture_of(1, 1, {1, 2, 3, 4}).mips.empty());
+}
 
 TEST(Prefilter, TexelsOfAMipAverageWhatTheyCover) {
     // Three texels become one and five become two: the middle one of five counts half to either side.
-    const Texture texture = texture_of(5, 1, {255, 0, 0, 255, 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 0, 0, 255, 255});
+    const Texture texture =
+        texture_of(5, 1, {255, 0, 0, 255, 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 0, 0, 255, 255});
     ASSERT_EQ(texture.mips.at(0).width, 2u);
     const auto of = [&](std::size_t n) { return texture.mips[0].rgba.at(n) / 65535.0; };
     EXPECT_NEAR(of(0), 0.8, mip_tolerance);
@@ -98,7 +121,9 @@ TEST(Prefilter, TexelsOfAMipAverageWhatTheyCover) {
 TEST(SampleFiltered, CoverageWeighsColours) {
     // Red that is all there beside green that is there by a fifth.
     const std::vector<std::uint8_t> rgba = {255, 0, 0, 255, 0, 255, 0, 51};
-    const auto mean = [&](Coverage coverage, float cutoff) { return map::sample_filtered(texture_of(2, 1, rgba, coverage, cutoff), {0.3f, 0.5f}, 1); };
+    const auto mean = [&](Coverage coverage, float cutoff) {
+        return map::sample_filtered(texture_of(2, 1, rgba, coverage, cutoff), {0.3f, 0.5f}, 1);
+    };
     expect_near(mean(Coverage::whole, 0), {0.5f, 0.5f, 0}, rounding);
     expect_near(mean(Coverage::alpha, 0), {5 / 6.0f, 1 / 6.0f, 0}, 2 * rounding);
     expect_near(mean(Coverage::cutoff, 0.5f), {1, 0, 0}, rounding);
@@ -119,7 +144,8 @@ TEST(SampleFiltered, LevelZeroIsTheSampleAndLevelsEndAtTheLast) {
         Texture texture = noise(random, 13, 6, coverage, 0.3f);
         for (int n = 0; n < 300; ++n) {
             texture.wrap_u = wraps[random() % 3], texture.wrap_v = wraps[random() % 3];
-            const glm::vec2 uv(static_cast<float>(random() % 4000) / 1000 - 2, static_cast<float>(random() % 4000) / 1000 - 2);
+            const glm::vec2 uv(static_cast<float>(random() % 4000) / 1000 - 2,
+                               static_cast<float>(random() % 4000) / 1000 - 2);
             EXPECT_EQ(map::sample_filtered(texture, uv, 0), glm::vec3(map::sample(texture, uv)));
             const auto last = static_cast<std::uint32_t>(texture.mips.size());
             EXPECT_EQ(map::sample_filtered(texture, uv, last + 1), map::sample_filtered(texture, uv, last));
@@ -135,9 +161,12 @@ TEST(SampleFiltered, EveryLevelShowsItsOwnMip) {
     for (std::uint32_t level = 1; level <= 4; ++level) {
         const MipLevel& mip = texture.mips[level - 1];
         for (std::uint32_t n = 0; n < mip.width * mip.height; ++n) {
-            const glm::vec2 centre((static_cast<float>(n % mip.width) + 0.5f) / static_cast<float>(mip.width), (static_cast<float>(n / mip.width) + 0.5f) / static_cast<float>(mip.height));
+            const glm::vec2 centre(
+                (static_cast<float>(n % mip.width) + 0.5f) / static_cast<float>(mip.width),
+                (static_cast<float>(n / mip.width) + 0.5f) / static_cast<float>(mip.height));
             const std::uint16_t* p = &mip.rgba[n * std::size_t{4}];
-            expect_near(map::sample_filtered(texture, centre, level), glm::vec3(p[0], p[1], p[2]) / 65535.0f, rounding);
+            expect_near(map::sample_filtered(texture, centre, level), glm::vec3(p[0], p[1], p[2]) / 65535.0f,
+                        rounding);
         }
     }
 }
@@ -159,13 +188,19 @@ TEST(SampleFiltered, WrapsAsTheSamplerSays) {
 // Alpha of noise, of patches, or mostly of one value.
 Texture alpha_picture(std::mt19937& random, std::uint32_t width, std::uint32_t height) {
     std::vector<std::uint8_t> rgba(std::size_t{width} * height * 4, 100);
-    const std::uint32_t kind = static_cast<std::uint32_t>(random()) % 3, patch = 1 + static_cast<std::uint32_t>(random()) % 20;
+    const std::uint32_t kind = static_cast<std::uint32_t>(random()) % 3,
+                        patch = 1 + static_cast<std::uint32_t>(random()) % 20;
     std::array<std::uint8_t, 64> patches{};
-    for (std::uint8_t& alpha : patches) alpha = random() % 2 == 0 ? 255 : static_cast<std::uint8_t>(random());
+    for (std::uint8_t& alpha : patches)
+        alpha = random() % 2 == 0 ? 255 : static_cast<std::uint8_t>(random());
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
             const std::uint8_t any = static_cast<std::uint8_t>(random());
-            rgba[(std::size_t{y} * width + x) * 4 + 3] = kind == 0 ? any : kind == 1 ? patches[(x / patch * 7 + y / patch) % 64] : random() % 200 == 0 ? any : 255;
+            rgba[(std::size_t{y} * width + x) * 4 + 3] = kind == 0 ? any
+                                                         : kind == 1
+                                                             ? patches[(x / patch * 7 + y / patch) % 64]
+                                                         : random() % 200 == 0 ? any
+                                                                               : 255;
         }
     }
     return texture_of(width, height, std::move(rgba), Coverage::alpha);
@@ -173,23 +208,32 @@ Texture alpha_picture(std::mt19937& random, std::uint32_t width, std::uint32_t h
 
 TEST(AlphaRange, BoundsEverySampleInsideTheBox) {
     std::mt19937 random(3);
-    const auto between = [&](float low, float high) { return low + (high - low) * static_cast<float>(random() % 1048576u) / 1048576.0f; };
+    const auto between = [&](float low, float high) {
+        return low + (high - low) * static_cast<float>(random() % 1048576u) / 1048576.0f;
+    };
     int narrow = 0;
-    for (const auto& [width, height] : {std::pair{1u, 1u}, {5u, 3u}, {8u, 8u}, {9u, 1u}, {17u, 40u}, {64u, 64u}, {100u, 30u}}) {
+    for (const auto& [width, height] :
+         {std::pair{1u, 1u}, {5u, 3u}, {8u, 8u}, {9u, 1u}, {17u, 40u}, {64u, 64u}, {100u, 30u}}) {
         for (int picture = 0; picture < 9; ++picture) {
             Texture texture = alpha_picture(random, width, height);
-            texture.wrap_u = wraps[static_cast<std::size_t>(picture) % 3], texture.wrap_v = wraps[static_cast<std::size_t>(picture) / 3];
+            texture.wrap_u = wraps[static_cast<std::size_t>(picture) % 3],
+            texture.wrap_v = wraps[static_cast<std::size_t>(picture) / 3];
             for (int n = 0; n < 150; ++n) {
                 const float size = n % 3 == 0 ? 0.02f : n % 3 == 1 ? 0.4f : 2.5f;
-                const glm::vec2 low(between(-3, 3), between(-3, 3)), high = low + glm::vec2(between(0, size), between(0, size));
+                const glm::vec2 low(between(-3, 3), between(-3, 3)),
+                    high = low + glm::vec2(between(0, size), between(0, size));
                 const map::AlphaRange range = map::alpha_range(texture, low, high);
                 narrow += range.low == range.high ? 1 : 0;
                 for (int k = 0; k < 40; ++k) {
                     // The corners first.
-                    const glm::vec2 part = k < 4 ? glm::vec2(k & 1, k >> 1) : glm::vec2(between(0, 1), between(0, 1));
-                    const float alpha = map::sample(texture, glm::min(low + (high - low) * part, high)).w * 255;
-                    ASSERT_GE(alpha, range.low - alpha_rounding) << width << " x " << height << ", picture " << picture << ", box " << n;
-                    ASSERT_LE(alpha, range.high + alpha_rounding) << width << " x " << height << ", picture " << picture << ", box " << n;
+                    const glm::vec2 part =
+                        k < 4 ? glm::vec2(k & 1, k >> 1) : glm::vec2(between(0, 1), between(0, 1));
+                    const float alpha =
+                        map::sample(texture, glm::min(low + (high - low) * part, high)).w * 255;
+                    ASSERT_GE(alpha, range.low - alpha_rounding)
+                        << width << " x " << height << ", picture " << picture << ", box " << n;
+                    ASSERT_LE(alpha, range.high + alpha_rounding)
+                        << width << " x " << height << ", picture " << picture << ", box " << n;
                 }
             }
         }
@@ -201,7 +245,8 @@ TEST(AlphaRange, IsTightWellInsideOnePart) {
     // Opaque but for a clear quarter at the picture's beginning.
     std::vector<std::uint8_t> rgba(64 * 64 * 4, 255);
     for (std::size_t y = 0; y < 32; ++y) {
-        for (std::size_t x = 0; x < 32; ++x) rgba[(y * 64 + x) * 4 + 3] = 0;
+        for (std::size_t x = 0; x < 32; ++x)
+            rgba[(y * 64 + x) * 4 + 3] = 0;
     }
     Texture texture = texture_of(64, 64, std::move(rgba), Coverage::cutoff, 0.5f);
     const auto range = [&](glm::vec2 low, glm::vec2 high) {

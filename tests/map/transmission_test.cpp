@@ -26,7 +26,8 @@ struct Pane {
 
 TEST(Transmission, FactorAndColourAreRead) {
     Pane pane;
-    pane.extension = {{"diffuseTransmissionFactor", 0.25}, {"diffuseTransmissionColorFactor", {0.5, 1, 0.125}}};
+    pane.extension = {{"diffuseTransmissionFactor", 0.25},
+                      {"diffuseTransmissionColorFactor", {0.5, 1, 0.125}}};
     EXPECT_EQ(pane.worn().transmission, 0.25f);
     EXPECT_EQ(pane.worn().transmission_colour, glm::vec3(0.5f, 1, 0.125f));
 }
@@ -45,17 +46,20 @@ TEST(Transmission, OutOfRangeIsRefused) {
     for (const double factor : {-0.25, 1.5, 1e30}) {
         Pane pane;
         pane.extension["diffuseTransmissionFactor"] = factor;
-        expect_refused(pane.import(), {"map.gltf", "material 0 ('pane')", "diffuseTransmissionFactor", "[0, 1]"});
+        expect_refused(pane.import(),
+                       {"map.gltf", "material 0 ('pane')", "diffuseTransmissionFactor", "[0, 1]"});
     }
     for (const double colour : {-0.25, 1.5}) {
         Pane pane;
         pane.extension["diffuseTransmissionColorFactor"] = {0, 1, colour};
-        expect_refused(pane.import(), {"map.gltf", "material 0 ('pane')", "diffuseTransmissionColorFactor", "[0, 1]"});
+        expect_refused(pane.import(),
+                       {"map.gltf", "material 0 ('pane')", "diffuseTransmissionColorFactor", "[0, 1]"});
     }
 }
 
 TEST(Transmission, OfTheWrongTypeIsRefused) {
-    for (const Json& wrong : {Json{{"diffuseTransmissionFactor", "half"}}, Json{{"diffuseTransmissionColorFactor", {1, 1}}}, Json(7)}) {
+    for (const Json& wrong : {Json{{"diffuseTransmissionFactor", "half"}},
+                              Json{{"diffuseTransmissionColorFactor", {1, 1}}}, Json(7)}) {
         Pane pane;
         pane.extension = wrong;
         expect_refused(pane.import(), {"map.gltf", "material 0", "KHR_materials_diffuse_transmission"});
@@ -73,7 +77,9 @@ TEST(Transmission, PicturesOfItAreIgnoredWithAWarning) {
         EXPECT_TRUE(map.textures.empty());
         EXPECT_EQ(map.materials.at(map.meshes.at(0).primitives.at(0).material).transmission, 0.5f);
         ASSERT_EQ(map.warnings.size(), 1u);
-        for (const std::string& part : {std::string("map.gltf"), std::string("material 0 ('pane')"), texture, std::string("ignored")}) EXPECT_NE(map.warnings[0].find(part), std::string::npos) << map.warnings[0];
+        for (const std::string& part :
+             {std::string("map.gltf"), std::string("material 0 ('pane')"), texture, std::string("ignored")})
+            EXPECT_NE(map.warnings[0].find(part), std::string::npos) << map.warnings[0];
     }
 }
 

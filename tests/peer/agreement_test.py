@@ -11,7 +11,9 @@ PROBES, VALUES, SE = 60, 12, 0.01
 def pairs(change=lambda probe, value: value, se=SE):
     """Two measurements of 0.5, but for `change` on drtv's side and noise of SE on Cycles's."""
     chance = random.Random(1)
-    return [Pair(n, change(n, 0.5), 0.0, chance.gauss(0.5, SE), se) for n in range(PROBES) for _ in range(VALUES)]
+    return [
+        Pair(n, change(n, 0.5), 0.0, chance.gauss(0.5, SE), se) for n in range(PROBES) for _ in range(VALUES)
+    ]
 
 
 def found(of, lit=PROBES):
@@ -29,11 +31,16 @@ class Complaints(unittest.TestCase):
         self.assertIn("one value is", found(pairs(lambda n, value: value + (0.12 if n == 7 else 0))))
 
     def test_spread_beyond_the_noise_is_told(self):
-        self.assertIn("as large as the noise explains", found(pairs(lambda n, value: value + (0.015 if n % 2 else -0.015))))
+        self.assertIn(
+            "as large as the noise explains",
+            found(pairs(lambda n, value: value + (0.015 if n % 2 else -0.015))),
+        )
 
     def test_too_much_noise_is_no_agreement(self):
         chance = random.Random(2)
-        self.assertIn("more samples", found([Pair(n, 0.5, 0.0, chance.gauss(0.5, 0.2), 0.2) for n in range(PROBES)]))
+        self.assertIn(
+            "more samples", found([Pair(n, 0.5, 0.0, chance.gauss(0.5, 0.2), 0.2) for n in range(PROBES)])
+        )
 
     def test_dark_probes_do_not_count(self):
         self.assertIn("49 probes see any light", found(pairs(), lit=49))
@@ -51,7 +58,9 @@ class StandardErrors(unittest.TestCase):
     def test_nested_bakes_give_that_of_the_finer(self):
         chance = random.Random(3)
         quarters = [[chance.gauss(0, 1) for _ in range(4)] for _ in range(20000)]
-        self.assertAlmostEqual(pooled_se([sum(q) / 4 for q in quarters], [q[0] for q in quarters]), 0.5, delta=0.01)
+        self.assertAlmostEqual(
+            pooled_se([sum(q) / 4 for q in quarters], [q[0] for q in quarters]), 0.5, delta=0.01
+        )
 
 
 if __name__ == "__main__":

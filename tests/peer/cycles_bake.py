@@ -20,7 +20,7 @@ from gltf_scene import BLEND, GltfScene  # noqa: E402
 # A square's side. Small beside a probe's distance from any surface; large beside the rounding of its corners, which
 # lie within some 100 m of the origin (2^-18 m): its normal is true to 1e-3.
 SQUARE_M = 0.01
-MAX_ALBEDO = 0.95         # as drtv clamps it
+MAX_ALBEDO = 0.95  # as drtv clamps it
 LEAF_TRANSMISSION = 0.5
 MAX_MASKED_LAYERS = 1024  # a ray may pass this many masked texels: all
 EXTENSION = {10497: "REPEAT", 33071: "EXTEND", 33648: "MIRROR"}
@@ -80,7 +80,12 @@ def make_material(source, has_colours, two_sided, leaf, images):
     nodes = Nodes(material.node_tree)
     colour, alpha = source.factor[:3], source.factor[3]
     if source.texture >= 0:
-        texture = nodes.new("ShaderNodeTexImage", image=images[source.texture], interpolation="Linear", extension=EXTENSION[source.wrap])
+        texture = nodes.new(
+            "ShaderNodeTexImage",
+            image=images[source.texture],
+            interpolation="Linear",
+            extension=EXTENSION[source.wrap],
+        )
         colour = nodes.vector("MULTIPLY", colour, texture.outputs["Color"])
         alpha = nodes.maths("MULTIPLY", alpha, texture.outputs["Alpha"])
     if has_colours:
@@ -90,16 +95,29 @@ def make_material(source, has_colours, two_sided, leaf, images):
     albedo = nodes.vector("MINIMUM", colour, (MAX_ALBEDO,) * 3)
     if not two_sided:  # the back is black, and blocks
         front = nodes.maths("SUBTRACT", 1.0, nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"])
-        albedo = nodes.vector("MULTIPLY", albedo, nodes.new("ShaderNodeCombineXYZ", front, front, front).outputs[0])
+        albedo = nodes.vector(
+            "MULTIPLY", albedo, nodes.new("ShaderNodeCombineXYZ", front, front, front).outputs[0]
+        )
     if leaf:  # lets half of what it sends back through; both together are no more than the limit
         albedo = nodes.vector("MINIMUM", albedo, (MAX_ALBEDO / (1 + LEAF_TRANSMISSION),) * 3)
     surface = nodes.new("ShaderNodeBsdfDiffuse", albedo, 0.0).outputs[0]
     if leaf:
         through = nodes.vector("MULTIPLY", albedo, (LEAF_TRANSMISSION,) * 3)
-        surface = nodes.new("ShaderNodeAddShader", surface, nodes.new("ShaderNodeBsdfTranslucent", through).outputs[0]).outputs[0]
+        surface = nodes.new(
+            "ShaderNodeAddShader", surface, nodes.new("ShaderNodeBsdfTranslucent", through).outputs[0]
+        ).outputs[0]
     if source.cutoff != -1:
-        hole = nodes.maths("SUBTRACT", 1.0, alpha) if source.cutoff == BLEND else nodes.maths("LESS_THAN", alpha, source.cutoff)
-        surface = nodes.new("ShaderNodeMixShader", hole, surface, nodes.new("ShaderNodeBsdfTransparent", (1, 1, 1, 1)).outputs[0]).outputs[0]
+        hole = (
+            nodes.maths("SUBTRACT", 1.0, alpha)
+            if source.cutoff == BLEND
+            else nodes.maths("LESS_THAN", alpha, source.cutoff)
+        )
+        surface = nodes.new(
+            "ShaderNodeMixShader",
+            hole,
+            surface,
+            nodes.new("ShaderNodeBsdfTransparent", (1, 1, 1, 1)).outputs[0],
+        ).outputs[0]
     nodes.new("ShaderNodeOutputMaterial", surface)
     return material
 
@@ -118,7 +136,9 @@ def make_mesh(name, positions, polygons, uvs=None, colours=None):
     if uvs is not None:
         mesh.uv_layers.new(name="uv").data.foreach_set("uv", np.ascontiguousarray(uvs, np.float32).ravel())
     if colours is not None:
-        mesh.color_attributes.new("albedo", "FLOAT_COLOR", "POINT").data.foreach_set("color", np.ascontiguousarray(colours, np.float32).ravel())
+        mesh.color_attributes.new("albedo", "FLOAT_COLOR", "POINT").data.foreach_set(
+            "color", np.ascontiguousarray(colours, np.float32).ravel()
+        )
     mesh.update(calc_edges=True)
     return mesh
 
@@ -147,10 +167,17 @@ class MapBuilder:
             self.meshes[key] = []
             for primitive in self.scene.meshes[index]:
                 two_sided = vegetation or primitive.material.two_sided
-                worn = (primitive.material, primitive.colours is not None, two_sided, vegetation and primitive.material.thin)
+                worn = (
+                    primitive.material,
+                    primitive.colours is not None,
+                    two_sided,
+                    vegetation and primitive.material.thin,
+                )
                 if worn not in self.materials:
                     self.materials[worn] = make_material(*worn, self.images)
-                uvs = None if primitive.uvs is None else (primitive.uvs * (1, -1) + (0, 1))[primitive.triangles]
+                uvs = (
+                    None if primitive.uvs is None else (primitive.uvs * (1, -1) + (0, 1))[primitive.triangles]
+                )
                 mesh = make_mesh("map", primitive.positions, primitive.triangles, uvs, primitive.colours)
                 mesh.materials.append(self.materials[worn])
                 self.meshes[key].append(mesh)
@@ -166,7 +193,9 @@ def make_squares(collection, probes, directions, replicas):
             normal = np.array(direction) / np.linalg.norm(direction)
             side = np.cross(normal, (1.0, 0, 0) if abs(normal[0]) < 0.5 else (0, 1.0, 0))
             side *= SQUARE_M / 2 / np.linalg.norm(side)
-            up = np.cross(normal, side)  # (side, up, normal) is right-handed: counter-clockwise from the front
+            up = np.cross(
+                normal, side
+            )  # (side, up, normal) is right-handed: counter-clockwise from the front
             for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
                 positions.append(probes[row // replicas] + s * side + t * up)
                 uvs.append(((column + 0.5 + s / 2) / columns, (row + 0.5 + t / 2) / rows))
@@ -193,7 +222,9 @@ def set_sky(world, axis):
     nodes = Nodes(world.node_tree)
     w = nodes.new("ShaderNodeTexCoord").outputs["Generated"]
     up = nodes.maths("GREATER_THAN", nodes.vector("DOT_PRODUCT", w, (0, 0, 1)), 0.0)
-    radiance = nodes.maths("MULTIPLY", up, nodes.maths("ADD", 1.0, nodes.vector("DOT_PRODUCT", w, tuple(axis))))
+    radiance = nodes.maths(
+        "MULTIPLY", up, nodes.maths("ADD", 1.0, nodes.vector("DOT_PRODUCT", w, tuple(axis)))
+    )
     nodes.new("ShaderNodeOutputWorld", nodes.new("ShaderNodeBackground", (1, 1, 1, 1), radiance).outputs[0])
 
 
@@ -226,7 +257,7 @@ def farthest(scene, probes):
 
 
 def main():
-    request_path, answer_path = sys.argv[sys.argv.index("--") + 1:]
+    request_path, answer_path = sys.argv[sys.argv.index("--") + 1 :]
     with open(request_path, encoding="utf-8") as file:
         request = json.load(file)
     probes = np.array(request["probes"])
@@ -237,7 +268,9 @@ def main():
     gltf = GltfScene(request["map"])
     MapBuilder(gltf, blender_scene.collection, origin)
     set_up_cycles(blender_scene, request)
-    image = make_squares(blender_scene.collection, probes - origin, request["directions"], request["replicas"])
+    image = make_squares(
+        blender_scene.collection, probes - origin, request["directions"], request["replicas"]
+    )
     answer = {"farthest_m": farthest(gltf, probes), "blender": bpy.app.version_string, "passes": []}
     for task in request["passes"]:
         set_sky(blender_scene.world, task["axis"])
@@ -249,7 +282,13 @@ def main():
         image.pixels.foreach_get(pixels)
         values = pixels.reshape(len(probes), request["replicas"], len(request["directions"]), 4)[..., :3]
         # by probe, direction, replica, channel
-        answer["passes"].append({"name": task["name"], "cpu_seconds": cpu_seconds, "values": values.transpose(0, 2, 1, 3).astype(float).tolist()})
+        answer["passes"].append(
+            {
+                "name": task["name"],
+                "cpu_seconds": cpu_seconds,
+                "values": values.transpose(0, 2, 1, 3).astype(float).tolist(),
+            }
+        )
     with open(answer_path, "w", encoding="utf-8") as file:
         json.dump(answer, file)
 

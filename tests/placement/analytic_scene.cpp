@@ -13,11 +13,13 @@ void AnalyticScene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
     hits.clear();
     floors(at, hits);
     for (const Box& box : boxes) {
-        if (at.x < box.low.x || at.x > box.high.x || at.y < box.low.y || at.y > box.high.y) continue;
+        if (at.x < box.low.x || at.x > box.high.x || at.y < box.low.y || at.y > box.high.y)
+            continue;
         hits.push_back({box.high.z, true, false});
         hits.push_back({box.low.z, false, true});
     }
-    std::stable_sort(hits.begin(), hits.end(), [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });
+    std::stable_sort(hits.begin(), hits.end(),
+                     [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });
 }
 
 bool AnalyticScene::meets_back(const glm::vec3& origin, const glm::vec3& direction) const {
@@ -28,34 +30,41 @@ bool AnalyticScene::meets_back(const glm::vec3& origin, const glm::vec3& directi
         for (int axis = 0; axis < 3; ++axis) {
             const double o = origin[axis], d = direction[axis];
             if (d == 0) {
-                if (o <= box.low[axis] || o >= box.high[axis]) return;
+                if (o <= box.low[axis] || o >= box.high[axis])
+                    return;
                 continue;
             }
             const double a = (box.low[axis] - o) / d, b = (box.high[axis] - o) / d;
             enter = std::max(enter, std::min(a, b));
             leave = std::min(leave, std::max(a, b));
         }
-        if (leave <= enter || leave <= 0) return;
+        if (leave <= enter || leave <= 0)
+            return;
         const double distance = enter > 0 ? enter : leave;
-        if (distance >= closest) return;
+        if (distance >= closest)
+            return;
         closest = distance;
         back = enter <= 0;
     };
-    for (const Box& box : boxes) shoot(box);
-    for (const Box& box : solids) shoot(box);
+    for (const Box& box : boxes)
+        shoot(box);
+    for (const Box& box : solids)
+        shoot(box);
     return back;
 }
 
 placement::Surroundings AnalyticScene::surroundings() const {
     return {[this](glm::vec2 at, std::vector<ColumnHit>& hits) { column(at, hits); },
             [this](const glm::vec3& origin, std::span<const glm::vec3> directions) {
-                return static_cast<std::size_t>(std::ranges::count_if(directions, [&](const glm::vec3& direction) { return meets_back(origin, direction); }));
+                return static_cast<std::size_t>(std::ranges::count_if(
+                    directions, [&](const glm::vec3& direction) { return meets_back(origin, direction); }));
             },
             [](const glm::vec3&, const glm::vec3&) { return true; }};
 }
 
 placement::Placement AnalyticScene::place(std::int32_t i, std::int32_t j, float min_distance_m) const {
-    auto placed = placement::place_probes({i, j, vegetation, manual, no_probes}, surroundings(), {min_distance_m});
+    auto placed =
+        placement::place_probes({i, j, vegetation, manual, no_probes}, surroundings(), {min_distance_m});
     EXPECT_TRUE(placed.has_value()) << placed.error();
     return placed.value_or(placement::Placement{});
 }
@@ -68,24 +77,41 @@ AnalyticScene flat_ground(float z_m) {
 
 placement::ClosedVolume box_volume(const glm::dvec3& low, const glm::dvec3& high) {
     std::vector<glm::dvec3> corners;
-    for (unsigned n = 0; n < 8; ++n) corners.emplace_back((n & 1) != 0 ? high.x : low.x, (n & 2) != 0 ? high.y : low.y, (n & 4) != 0 ? high.z : low.z);
-    const std::array<glm::uvec3, 12> triangles = {{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}}};
+    for (unsigned n = 0; n < 8; ++n)
+        corners.emplace_back((n & 1) != 0 ? high.x : low.x, (n & 2) != 0 ? high.y : low.y,
+                             (n & 4) != 0 ? high.z : low.z);
+    const std::array<glm::uvec3, 12> triangles = {{{0, 2, 1},
+                                                   {1, 2, 3},
+                                                   {4, 5, 6},
+                                                   {5, 7, 6},
+                                                   {0, 1, 4},
+                                                   {1, 5, 4},
+                                                   {2, 6, 3},
+                                                   {3, 6, 7},
+                                                   {0, 4, 2},
+                                                   {2, 4, 6},
+                                                   {1, 3, 5},
+                                                   {3, 7, 5}}};
     return placement::ClosedVolume::make("box", corners, triangles).value();
 }
 
 std::int64_t squared_distance(const Position& a, const Position& b) {
     std::int64_t sum = 0;
-    for (int axis = 0; axis < 3; ++axis) sum += (std::int64_t{a[axis]} - b[axis]) * (std::int64_t{a[axis]} - b[axis]);
+    for (int axis = 0; axis < 3; ++axis)
+        sum += (std::int64_t{a[axis]} - b[axis]) * (std::int64_t{a[axis]} - b[axis]);
     return sum;
 }
 
-std::int64_t squared_units(double distance_m) { return std::llround(distance_m * 1024) * std::llround(distance_m * 1024); }
+std::int64_t squared_units(double distance_m) {
+    return std::llround(distance_m * 1024) * std::llround(distance_m * 1024);
+}
 
 std::int64_t least_squared_distance(std::span<const PlacedProbe> probes) {
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (std::size_t a = 0; a < probes.size(); ++a) {
         for (std::size_t b = 0; b < a; ++b) {
-            if (probes[a].kind == Kind::manual && probes[b].kind == Kind::manual) continue;
+            if (probes[a].kind == Kind::manual && probes[b].kind == Kind::manual)
+                continue;
             least = std::min(least, squared_distance(probes[a].position, probes[b].position));
         }
     }
@@ -93,12 +119,14 @@ std::int64_t least_squared_distance(std::span<const PlacedProbe> probes) {
 }
 
 std::size_t count_of(const placement::Placement& placement, Kind kind) {
-    return static_cast<std::size_t>(std::count_if(placement.probes.begin(), placement.probes.end(), [kind](const PlacedProbe& p) { return p.kind == kind; }));
+    return static_cast<std::size_t>(std::count_if(placement.probes.begin(), placement.probes.end(),
+                                                  [kind](const PlacedProbe& p) { return p.kind == kind; }));
 }
 
 std::vector<ProbeKey> keys(std::span<const PlacedProbe> probes) {
     std::vector<ProbeKey> result;
-    for (const PlacedProbe& p : probes) result.emplace_back(p.position.y, p.position.x, p.position.z, static_cast<int>(p.kind));
+    for (const PlacedProbe& p : probes)
+        result.emplace_back(p.position.y, p.position.x, p.position.z, static_cast<int>(p.kind));
     return result;
 }
 

@@ -19,7 +19,8 @@ using placement::Position;
 
 struct AnalyticScene {
     // Surfaces by height over (x, y), any order; the scene sorts them.
-    std::function<void(glm::vec2, std::vector<ColumnHit>&)> floors = [](glm::vec2, std::vector<ColumnHit>&) {};
+    std::function<void(glm::vec2, std::vector<ColumnHit>&)> floors = [](glm::vec2, std::vector<ColumnHit>&) {
+    };
     std::vector<Box> boxes;   // closed solids, met by columns and rays
     std::vector<Box> solids;  // met by rays only: what a column cannot know about
     std::vector<Box> vegetation;
@@ -41,7 +42,8 @@ struct AnalyticScene {
 
 [[nodiscard]] std::int64_t squared_distance(const Position& a, const Position& b);
 [[nodiscard]] std::int64_t squared_units(double distance_m);
-// Over all pairs of automatic probes, and of an automatic and a manual one; the largest number when there is none.
+// Over all pairs of automatic probes, and of an automatic and a manual one; the largest number when there is
+// none.
 [[nodiscard]] std::int64_t least_squared_distance(std::span<const PlacedProbe> probes);
 [[nodiscard]] std::size_t count_of(const placement::Placement& placement, Kind kind);
 

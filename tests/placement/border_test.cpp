@@ -1,5 +1,5 @@
-// The heart of placement: sectors that decide one by one agree with one slow decision over all of them. The slow
-// one is written from the rule, as a recursion instead of a sweep.
+// The heart of placement: sectors that decide one by one agree with one slow decision over all of them. The
+// slow one is written from the rule, as a recursion instead of a sweep.
 #include "tests/placement/analytic_scene.h"
 
 #include <gtest/gtest.h>
@@ -18,11 +18,14 @@ struct Proposal {
     Position position;
     int kind = 0;
     unsigned bayer = 0, level = 0;
-    bool operator<(const Proposal& o) const { return std::tie(kind, bayer, level) < std::tie(o.kind, o.bayer, o.level); }
+    bool operator<(const Proposal& o) const {
+        return std::tie(kind, bayer, level) < std::tie(o.kind, o.bayer, o.level);
+    }
 };
 
 unsigned bayer(unsigned x, unsigned y, unsigned stride) {
-    if (stride == 1) return 0;
+    if (stride == 1)
+        return 0;
     const unsigned quarter = (stride / 2) * (stride / 2);
     const unsigned place[2][2] = {{0, 2}, {3, 1}};  // [y][x]
     return place[y % 2][x % 2] * quarter + bayer(x / 2 % (stride / 2), y / 2 % (stride / 2), stride / 2);
@@ -32,7 +35,8 @@ class GlobalDecision {
   public:
     GlobalDecision(const AnalyticScene& scene, glm::ivec2 low_m, glm::ivec2 high_m, double distance_m)
         : scene_(scene), reach_units_(distance_m * 1024), least_(squared_units(distance_m)) {
-        for (const glm::dvec3& m : scene.manual) manual_.emplace_back(std::lround(m.x * 1024), std::lround(m.y * 1024), std::lround(m.z * 1024));
+        for (const glm::dvec3& m : scene.manual)
+            manual_.emplace_back(std::lround(m.x * 1024), std::lround(m.y * 1024), std::lround(m.z * 1024));
         propose(4, 0, low_m, high_m, distance_m);
         propose(8, 1, low_m, high_m, distance_m);
         kept_.resize(proposals_.size());
@@ -40,7 +44,9 @@ class GlobalDecision {
         higher_.resize(proposals_.size());
         for (std::size_t n = 0; n < proposals_.size(); ++n) {
             for (std::size_t m = 0; m < proposals_.size(); ++m) {
-                if (proposals_[m] < proposals_[n] && squared_distance(proposals_[m].position, proposals_[n].position) < least_) higher_[n].push_back(m);
+                if (proposals_[m] < proposals_[n] &&
+                    squared_distance(proposals_[m].position, proposals_[n].position) < least_)
+                    higher_[n].push_back(m);
             }
         }
     }
@@ -48,16 +54,21 @@ class GlobalDecision {
     std::vector<PlacedProbe> run() {
         std::vector<PlacedProbe> result;
         for (std::size_t n = 0; n < proposals_.size(); ++n) {
-            if (kept(n)) result.push_back({proposals_[n].position, static_cast<Kind>(proposals_[n].kind)});
+            if (kept(n))
+                result.push_back({proposals_[n].position, static_cast<Kind>(proposals_[n].kind)});
         }
         const std::size_t standing = result.size();
         for (std::size_t n = 0; n < proposals_.size(); ++n) {
             const std::optional<Position> place = free_place(n);
-            if (!place || near_manual(*place)) continue;
+            if (!place || near_manual(*place))
+                continue;
             const auto near = [&](const Position& other) { return squared_distance(*place, other) < least_; };
-            bool free = std::none_of(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(standing), [&](const PlacedProbe& p) { return near(p.position); });
-            for (std::size_t m = 0; free && m < proposals_.size(); ++m) free = !(proposals_[m] < proposals_[n] && free_place(m) && near(*free_place(m)));
-            if (free) result.push_back({*place, static_cast<Kind>(proposals_[n].kind)});
+            bool free = std::none_of(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(standing),
+                                     [&](const PlacedProbe& p) { return near(p.position); });
+            for (std::size_t m = 0; free && m < proposals_.size(); ++m)
+                free = !(proposals_[m] < proposals_[n] && free_place(m) && near(*free_place(m)));
+            if (free)
+                result.push_back({*place, static_cast<Kind>(proposals_[n].kind)});
             moved += free ? 1u : 0u;
         }
         return result;
@@ -68,14 +79,18 @@ class GlobalDecision {
   private:
     void propose(std::int32_t lattice_m, int kind, glm::ivec2 low_m, glm::ivec2 high_m, double distance_m) {
         unsigned stride = 1;
-        while (stride * static_cast<unsigned>(lattice_m) < distance_m) stride *= 2;
+        while (stride * static_cast<unsigned>(lattice_m) < distance_m)
+            stride *= 2;
         for (std::int32_t y = low_m.y + lattice_m / 2; y < high_m.y; y += lattice_m) {
             for (std::int32_t x = low_m.x + lattice_m / 2; x < high_m.x; x += lattice_m) {
                 // 1024 lattice squares more do not change the class and keep the numbers positive.
-                const unsigned a = static_cast<unsigned>((x - lattice_m / 2) / lattice_m + 1024), b = static_cast<unsigned>((y - lattice_m / 2) / lattice_m + 1024);
+                const unsigned a = static_cast<unsigned>((x - lattice_m / 2) / lattice_m + 1024),
+                               b = static_cast<unsigned>((y - lattice_m / 2) / lattice_m + 1024);
                 unsigned level = 0;
                 for (double z_m : kind == 0 ? ground(x, y) : tops(x, y)) {
-                    proposals_.push_back({Position(x * 1024, y * 1024, static_cast<int>(std::lround(z_m * 1024))), kind, bayer(a % stride, b % stride, stride), level++});
+                    proposals_.push_back(
+                        {Position(x * 1024, y * 1024, static_cast<int>(std::lround(z_m * 1024))), kind,
+                         bayer(a % stride, b % stride, stride), level++});
                 }
             }
         }
@@ -87,9 +102,12 @@ class GlobalDecision {
         scene_.column({x, y}, hits);
         std::vector<double> heights;
         for (std::size_t n = hits.size(); n-- > 0;) {
-            if (!hits[n].up_facing) continue;
-            if (n == 0) heights.push_back(hits[n].z_m + 1.0);
-            else if (hits[n - 1].down_facing && hits[n - 1].z_m - hits[n].z_m >= 1.5f) heights.push_back(hits[n].z_m + std::min(1.0, (hits[n - 1].z_m - hits[n].z_m) / 2.0));
+            if (!hits[n].up_facing)
+                continue;
+            if (n == 0)
+                heights.push_back(hits[n].z_m + 1.0);
+            else if (hits[n - 1].down_facing && hits[n - 1].z_m - hits[n].z_m >= 1.5f)
+                heights.push_back(hits[n].z_m + std::min(1.0, (hits[n - 1].z_m - hits[n].z_m) / 2.0));
         }
         return heights;
     }
@@ -97,12 +115,16 @@ class GlobalDecision {
     std::vector<double> tops(std::int32_t x, std::int32_t y) {
         std::vector<const Box*> here;
         for (const Box& b : scene_.vegetation) {
-            if (b.low.x <= static_cast<float>(x) && static_cast<float>(x) <= b.high.x && b.low.y <= static_cast<float>(y) && static_cast<float>(y) <= b.high.y) here.push_back(&b);
+            if (b.low.x <= static_cast<float>(x) && static_cast<float>(x) <= b.high.x &&
+                b.low.y <= static_cast<float>(y) && static_cast<float>(y) <= b.high.y)
+                here.push_back(&b);
         }
         std::vector<double> heights;
         for (const Box* b : here) {
             // A top counts when no box goes on above it.
-            if (std::none_of(here.begin(), here.end(), [&](const Box* o) { return o->low.z <= b->high.z && o->high.z > b->high.z; })) heights.push_back(double{b->high.z} + 1);
+            if (std::none_of(here.begin(), here.end(),
+                             [&](const Box* o) { return o->low.z <= b->high.z && o->high.z > b->high.z; }))
+                heights.push_back(double{b->high.z} + 1);
         }
         std::sort(heights.begin(), heights.end());
         heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
@@ -110,25 +132,31 @@ class GlobalDecision {
     }
 
     bool near_manual(const Position& p) const {
-        return std::any_of(manual_.begin(), manual_.end(), [&](const Position& m) { return squared_distance(p, m) < least_; });
+        return std::any_of(manual_.begin(), manual_.end(),
+                           [&](const Position& m) { return squared_distance(p, m) < least_; });
     }
 
     bool removed(const Position& p) const {
-        return std::any_of(scene_.no_probes.begin(), scene_.no_probes.end(), [&](const auto& v) { return v.contains(glm::dvec3(p) / 1024.0); });
+        return std::any_of(scene_.no_probes.begin(), scene_.no_probes.end(),
+                           [&](const auto& v) { return v.contains(glm::dvec3(p) / 1024.0); });
     }
 
     // Of the 26 directions more than a quarter, 6.5, meet backs.
     bool in_solid(const Position& p) const {
         int backs = 0;
-        for (const glm::vec3& d : directions()) backs += scene_.meets_back(glm::vec3(p) / 1024.0f, d) ? 1 : 0;
+        for (const glm::vec3& d : directions())
+            backs += scene_.meets_back(glm::vec3(p) / 1024.0f, d) ? 1 : 0;
         return backs >= 7;
     }
 
     static std::vector<glm::vec3> directions() {
         std::vector<glm::vec3> result;
-        const auto add = [&](int x, int y, int z) { result.push_back(glm::vec3(x, y, z) / std::sqrt(static_cast<float>(x * x + y * y + z * z))); };
+        const auto add = [&](int x, int y, int z) {
+            result.push_back(glm::vec3(x, y, z) / std::sqrt(static_cast<float>(x * x + y * y + z * z)));
+        };
         for (int z : {1, 0, -1}) {
-            if (z != 0) add(0, 0, z);
+            if (z != 0)
+                add(0, 0, z);
             add(1, 0, z), add(-1, 0, z), add(0, 1, z), add(0, -1, z);
             add(1, 1, z), add(-1, 1, z), add(1, -1, z), add(-1, -1, z);
         }
@@ -137,28 +165,36 @@ class GlobalDecision {
 
     bool undisturbed(std::size_t n) {
         const Position& p = proposals_[n].position;
-        return !removed(p) && !near_manual(p) && std::none_of(higher_[n].begin(), higher_[n].end(), [&](std::size_t m) { return kept(m); });
+        return !removed(p) && !near_manual(p) &&
+               std::none_of(higher_[n].begin(), higher_[n].end(), [&](std::size_t m) { return kept(m); });
     }
 
     bool kept(std::size_t n) {
-        if (!kept_[n]) kept_[n] = undisturbed(n) && !in_solid(proposals_[n].position);
+        if (!kept_[n])
+            kept_[n] = undisturbed(n) && !in_solid(proposals_[n].position);
         return *kept_[n];
     }
 
     std::optional<Position> free_place(std::size_t n) {
-        if (!places_[n]) places_[n] = find_free_place(n);
+        if (!places_[n])
+            places_[n] = find_free_place(n);
         return *places_[n];
     }
 
     std::optional<Position> find_free_place(std::size_t n) {
         const Position& from = proposals_[n].position;
-        if (!in_solid(from) || !undisturbed(n)) return std::nullopt;
+        if (!in_solid(from) || !undisturbed(n))
+            return std::nullopt;
         for (double share : {0.125, 0.25, 0.5}) {
             for (const glm::vec3& d : directions()) {
                 Position place = from;
-                for (int axis = 0; axis < 3; ++axis) place[axis] += static_cast<int>(static_cast<double>(d[axis]) * share * reach_units_);
-                const auto same = [](int a, int b) { return std::floor(a / double{sector_units}) == std::floor(b / double{sector_units}); };
-                if (same(place.x, from.x) && same(place.y, from.y) && !removed(place) && !in_solid(place)) return place;
+                for (int axis = 0; axis < 3; ++axis)
+                    place[axis] += static_cast<int>(static_cast<double>(d[axis]) * share * reach_units_);
+                const auto same = [](int a, int b) {
+                    return std::floor(a / double{sector_units}) == std::floor(b / double{sector_units});
+                };
+                if (same(place.x, from.x) && same(place.y, from.y) && !removed(place) && !in_solid(place))
+                    return place;
             }
         }
         return std::nullopt;
@@ -176,15 +212,20 @@ class GlobalDecision {
 
 constexpr std::int32_t low_m = -64, high_m = 128;  // the block: sectors -1, 0 and 1 either way
 
-// Ground with holes, upper floors, solids no column sees, thickets, manual probes and a volume; all in the block.
+// Ground with holes, upper floors, solids no column sees, thickets, manual probes and a volume; all in the
+// block.
 AnalyticScene random_scene(unsigned seed, float holes) {
     AnalyticScene scene;
     scene.floors = [seed, holes](glm::vec2 at, std::vector<ColumnHit>& hits) {
-        if (at.x < low_m || at.y < low_m || at.x >= high_m || at.y >= high_m) return;
-        std::mt19937 random(seed * 7919u + static_cast<unsigned>(at.x + 1000) * 4001u + static_cast<unsigned>(at.y + 1000));
+        if (at.x < low_m || at.y < low_m || at.x >= high_m || at.y >= high_m)
+            return;
+        std::mt19937 random(seed * 7919u + static_cast<unsigned>(at.x + 1000) * 4001u +
+                            static_cast<unsigned>(at.y + 1000));
         const auto uniform = [&] { return static_cast<float>(random() % 65536u) / 65536.0f; };
-        if (uniform() < holes) return;
-        const float z_m = 6 * std::sin(at.x * 0.11f + static_cast<float>(seed)) + 5 * std::cos(at.y * 0.07f) + uniform();
+        if (uniform() < holes)
+            return;
+        const float z_m =
+            6 * std::sin(at.x * 0.11f + static_cast<float>(seed)) + 5 * std::cos(at.y * 0.07f) + uniform();
         hits.push_back({z_m, true, false});
         if (uniform() < 0.15f) {
             const float ceiling_m = z_m + 1.2f + 4 * uniform();
@@ -193,14 +234,20 @@ AnalyticScene random_scene(unsigned seed, float holes) {
         }
     };
     std::mt19937 random(seed);
-    const auto between = [&](float a, float b) { return a + (b - a) * static_cast<float>(random() % 65536u) / 65536.0f; };
+    const auto between = [&](float a, float b) {
+        return a + (b - a) * static_cast<float>(random() % 65536u) / 65536.0f;
+    };
     const auto box = [&](float most_m, float low_z, float high_z) {
-        const glm::vec3 low(between(low_m, high_m - most_m), between(low_m, high_m - most_m), between(low_z, high_z));
+        const glm::vec3 low(between(low_m, high_m - most_m), between(low_m, high_m - most_m),
+                            between(low_z, high_z));
         return Box{low, low + glm::vec3(between(0.5f, most_m), between(0.5f, most_m), between(0.5f, 6))};
     };
-    for (int n = 0; n < 200; ++n) scene.solids.push_back(box(8, -12, 10));
-    for (int n = 0; n < 60; ++n) scene.vegetation.push_back(box(14, -8, 10));
-    for (int n = 0; n < 25; ++n) scene.manual.emplace_back(between(low_m, high_m), between(low_m, high_m), between(-8, 10));
+    for (int n = 0; n < 200; ++n)
+        scene.solids.push_back(box(8, -12, 10));
+    for (int n = 0; n < 60; ++n)
+        scene.vegetation.push_back(box(14, -8, 10));
+    for (int n = 0; n < 25; ++n)
+        scene.manual.emplace_back(between(low_m, high_m), between(low_m, high_m), between(-8, 10));
     // On borders and corners, where "whose is it" is asked.
     scene.manual.insert(scene.manual.end(), {{0, 0, 3}, {64, 20, 0}, {0, 33, 2}, {64, 64, 1}});
     scene.no_probes = {box_volume({-9, 20, -20}, {11, 41, 20}), box_volume({50, 55, -20}, {81, 71, 3})};
@@ -213,7 +260,8 @@ TEST_P(SectorBorder, SectorsOneByOneEqualOneGlobalDecision) {
     const float distance_m = GetParam();
     unsigned moved = 0;
     for (unsigned seed = 1; seed <= 4; ++seed) {
-        const AnalyticScene scene = random_scene(seed, distance_m < 4 ? 0.5f : 0.08f * static_cast<float>(seed - 1));
+        const AnalyticScene scene =
+            random_scene(seed, distance_m < 4 ? 0.5f : 0.08f * static_cast<float>(seed - 1));
         std::vector<PlacedProbe> all;
         for (std::int32_t j = -1; j <= 1; ++j) {
             for (std::int32_t i = -1; i <= 1; ++i) {

@@ -1,7 +1,7 @@
 #include "tests/placement/analytic_scene.h"
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include <random>
 #include <thread>
@@ -13,21 +13,26 @@ using placement::ClosedVolume;
 
 const std::vector<glm::dvec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {7, 7, 7}};
 
-void expect_refusal(const std::vector<glm::dvec3>& positions, const std::vector<glm::uvec3>& triangles, const std::string& reason) {
+void expect_refusal(const std::vector<glm::dvec3>& positions, const std::vector<glm::uvec3>& triangles,
+                    const std::string& reason) {
     const auto volume = ClosedVolume::make("the shed", positions, triangles);
     ASSERT_FALSE(volume.has_value());
     EXPECT_NE(volume.error().find("'the shed'"), std::string::npos) << volume.error();
     EXPECT_NE(volume.error().find(reason), std::string::npos) << volume.error();
 }
 
-TEST(ClosedVolume, OpenMeshIsASentenceWithItsName) { expect_refusal(corners, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}}, "is open"); }
+TEST(ClosedVolume, OpenMeshIsASentenceWithItsName) {
+    expect_refusal(corners, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}}, "is open");
+}
 
 TEST(ClosedVolume, NoTrianglesIsASentence) {
     expect_refusal({}, {}, "no triangles");
     expect_refusal(corners, {{0, 0, 1}}, "no triangles");
 }
 
-TEST(ClosedVolume, EdgeOfThreeTrianglesIsASentence) { expect_refusal(corners, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 1, 4}}, "edge"); }
+TEST(ClosedVolume, EdgeOfThreeTrianglesIsASentence) {
+    expect_refusal(corners, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 1, 4}}, "edge");
+}
 
 TEST(ClosedVolume, WindingAndSplitVerticesDoNotMatter) {
     for (unsigned flips = 0; flips < 16; ++flips) {
@@ -36,9 +41,12 @@ TEST(ClosedVolume, WindingAndSplitVerticesDoNotMatter) {
         const glm::uvec3 faces[] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
         for (unsigned n = 0; n < 4; ++n) {
             const auto first = static_cast<unsigned>(positions.size());
-            for (int k = 0; k < 3; ++k) positions.push_back(corners[faces[n][k]]);
-            if ((flips >> n & 1) != 0) triangles.emplace_back(first, first + 2, first + 1);
-            else triangles.emplace_back(first, first + 1, first + 2);
+            for (int k = 0; k < 3; ++k)
+                positions.push_back(corners[faces[n][k]]);
+            if ((flips >> n & 1) != 0)
+                triangles.emplace_back(first, first + 2, first + 1);
+            else
+                triangles.emplace_back(first, first + 1, first + 2);
         }
         const auto volume = ClosedVolume::make("v", positions, triangles);
         ASSERT_TRUE(volume.has_value()) << volume.error();
@@ -52,8 +60,10 @@ TEST(ClosedVolume, WindingAndSplitVerticesDoNotMatter) {
 TEST(ClosedVolume, TwoPartsAreOneVolume) {
     std::vector<glm::dvec3> positions = {corners.begin(), corners.begin() + 4};
     std::vector<glm::uvec3> triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-    for (int n = 0; n < 4; ++n) positions.push_back(positions[static_cast<std::size_t>(n)] + glm::dvec3(5, 0, 0));
-    for (int n = 0; n < 4; ++n) triangles.push_back(triangles[static_cast<std::size_t>(n)] + 4u);
+    for (int n = 0; n < 4; ++n)
+        positions.push_back(positions[static_cast<std::size_t>(n)] + glm::dvec3(5, 0, 0));
+    for (int n = 0; n < 4; ++n)
+        triangles.push_back(triangles[static_cast<std::size_t>(n)] + 4u);
     const ClosedVolume volume = ClosedVolume::make("v", positions, triangles).value();
     EXPECT_TRUE(volume.contains({0.1, 0.1, 0.1}));
     EXPECT_TRUE(volume.contains({5.1, 0.1, 0.1}));
@@ -64,7 +74,8 @@ TEST(ClosedVolume, TwoPartsAreOneVolume) {
 double six_volumes(const ClosedVolume& volume) {
     const std::vector<glm::dvec3> vertices = volume.vertices();
     double sum = 0;
-    for (const glm::uvec3& t : volume.triangles()) sum += glm::dot(vertices[t.x], glm::cross(vertices[t.y], vertices[t.z]));
+    for (const glm::uvec3& t : volume.triangles())
+        sum += glm::dot(vertices[t.x], glm::cross(vertices[t.y], vertices[t.z]));
     return sum;
 }
 
@@ -73,9 +84,11 @@ TEST(ClosedVolume, SurfaceIsMergedAndTurnedOutwards) {
         // Each triangle with vertices of its own.
         std::vector<glm::dvec3> positions;
         std::vector<glm::uvec3> triangles;
-        for (const glm::uvec3& t : {glm::uvec3(0, 2, 1), glm::uvec3(0, 1, 3), glm::uvec3(1, 2, 3), glm::uvec3(2, 0, 3)}) {
+        for (const glm::uvec3& t :
+             {glm::uvec3(0, 2, 1), glm::uvec3(0, 1, 3), glm::uvec3(1, 2, 3), glm::uvec3(2, 0, 3)}) {
             const auto first = static_cast<unsigned>(positions.size());
-            for (glm::length_t k = 0; k < 3; ++k) positions.push_back(corners[t[k]]);
+            for (glm::length_t k = 0; k < 3; ++k)
+                positions.push_back(corners[t[k]]);
             triangles.emplace_back(first, first + (inwards ? 2 : 1), first + (inwards ? 1 : 2));
         }
         const ClosedVolume volume = ClosedVolume::make("v", positions, triangles).value();
@@ -93,13 +106,15 @@ TEST(ClosedVolume, ThreadsAgreeWithTheBoxFormula) {
         threads.emplace_back([&, t] {
             std::mt19937 random(t);
             for (int n = 0; n < 2000; ++n) {
-                const glm::dvec3 p = glm::dvec3(glm::uvec3(random() % 12, random() % 12, random() % 6)) - glm::dvec3(4, 1, 1);  // often on faces and edges
+                const glm::dvec3 p = glm::dvec3(glm::uvec3(random() % 12, random() % 12, random() % 6)) -
+                                     glm::dvec3(4, 1, 1);  // often on faces and edges
                 const bool inside = p.x >= -3 && p.x <= 4 && p.y >= 2 && p.y <= 9 && p.z >= 1 && p.z <= 3;
                 wrong[t] += volume.contains(p) != inside ? 1 : 0;
             }
         });
     }
-    for (std::thread& thread : threads) thread.join();
+    for (std::thread& thread : threads)
+        thread.join();
     EXPECT_EQ(wrong, std::vector<int>(4, 0));
 }
 

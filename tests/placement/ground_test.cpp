@@ -1,6 +1,6 @@
 // Columns on the 4 m lattice: what proposes a probe, and how high.
-#include "tests/placement/analytic_scene.h"
 #include "placement/candidates.h"
+#include "tests/placement/analytic_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,9 @@ namespace {
 
 AnalyticScene room(float ceiling_m) {
     AnalyticScene scene;
-    scene.floors = [ceiling_m](glm::vec2, std::vector<ColumnHit>& hits) { hits = {{ceiling_m, false, true}, {0, true, false}}; };
+    scene.floors = [ceiling_m](glm::vec2, std::vector<ColumnHit>& hits) {
+        hits = {{ceiling_m, false, true}, {0, true, false}};
+    };
     return scene;
 }
 
@@ -38,10 +40,14 @@ TEST(GroundPlacement, ProbesStandOneMetreAboveOnTheGlobalLattice) {
 
 TEST(GroundPlacement, SlopeIsFollowedToTheUnit) {
     AnalyticScene scene;
-    scene.floors = [](glm::vec2 at, std::vector<ColumnHit>& hits) { hits = {{at.x * 0.3f + at.y * 0.7f, true, false}}; };
+    scene.floors = [](glm::vec2 at, std::vector<ColumnHit>& hits) {
+        hits = {{at.x * 0.3f + at.y * 0.7f, true, false}};
+    };
     const placement::Placement placed = scene.place(1, -2);
     EXPECT_FALSE(placed.probes.empty());
-    for (const PlacedProbe& p : placed.probes) EXPECT_NEAR(p.position.z, p.position.x * 0.3 + p.position.y * 0.7 + 1024, 0.6) << "more than rounding to 2^-10 m";
+    for (const PlacedProbe& p : placed.probes)
+        EXPECT_NEAR(p.position.z, p.position.x * 0.3 + p.position.y * 0.7 + 1024, 0.6)
+            << "more than rounding to 2^-10 m";
 }
 
 TEST(GroundPlacement, CeilingUnderOneAndAHalfMetresLeavesNone) {
@@ -51,10 +57,12 @@ TEST(GroundPlacement, CeilingUnderOneAndAHalfMetresLeavesNone) {
 }
 
 TEST(GroundPlacement, LowCeilingPutsTheProbeHalfway) {
-    for (const auto& [ceiling_m, probe_units] : {std::pair{1.6f, 819}, {1.75f, 896}, {2.0f, 1024}, {3.0f, 1024}}) {
+    for (const auto& [ceiling_m, probe_units] :
+         {std::pair{1.6f, 819}, {1.75f, 896}, {2.0f, 1024}, {3.0f, 1024}}) {
         const placement::Placement placed = room(ceiling_m).place(0, 0);
         ASSERT_FALSE(placed.probes.empty());
-        for (const PlacedProbe& p : placed.probes) EXPECT_EQ(p.position.z, probe_units) << "under " << ceiling_m << " m";
+        for (const PlacedProbe& p : placed.probes)
+            EXPECT_EQ(p.position.z, probe_units) << "under " << ceiling_m << " m";
     }
 }
 
@@ -63,10 +71,12 @@ TEST(GroundPlacement, EveryFloorOfABuildingCarriesProbes) {
     scene.boxes = {{{-100, -100, 10}, {200, 200, 10.5f}}, {{-100, -100, 20}, {200, 200, 20.5f}}};
     const placement::Placement placed = scene.place(0, 0, 6);
     std::map<int, int> of_height;
-    for (const PlacedProbe& p : placed.probes) ++of_height[p.position.z];
+    for (const PlacedProbe& p : placed.probes)
+        ++of_height[p.position.z];
     EXPECT_EQ(placed.report.candidates, 3u * 256u);
     ASSERT_EQ(of_height.size(), 3u);
-    EXPECT_TRUE(of_height.contains(1024) && of_height.contains(11 * 1024 + 512) && of_height.contains(21 * 1024 + 512));
+    EXPECT_TRUE(of_height.contains(1024) && of_height.contains(11 * 1024 + 512) &&
+                of_height.contains(21 * 1024 + 512));
 }
 
 TEST(GroundPlacement, TopOfASolidInsideAnotherProposesNothing) {
@@ -74,15 +84,18 @@ TEST(GroundPlacement, TopOfASolidInsideAnotherProposesNothing) {
     scene.boxes = {{{-100, -100, -1}, {200, 200, 3}}, {{-100, -100, 2}, {200, 200, 9}}};
     const placement::Placement placed = scene.place(0, 0);
     EXPECT_EQ(placed.report.candidates, 256u);
-    for (const PlacedProbe& p : placed.probes) EXPECT_EQ(p.position.z, 10 * 1024);
+    for (const PlacedProbe& p : placed.probes)
+        EXPECT_EQ(p.position.z, 10 * 1024);
 }
 
 TEST(GroundPlacement, StackedBoxesThatTouchProposeOnTopOnly) {
     for (const bool swapped : {false, true}) {
         AnalyticScene scene;
         scene.boxes = {{{-100, -100, 0}, {200, 200, 4}}, {{-100, -100, 4}, {200, 200, 8}}};
-        if (swapped) std::swap(scene.boxes[0], scene.boxes[1]);
-        for (const PlacedProbe& p : scene.place(0, 0).probes) EXPECT_EQ(p.position.z, 9 * 1024);
+        if (swapped)
+            std::swap(scene.boxes[0], scene.boxes[1]);
+        for (const PlacedProbe& p : scene.place(0, 0).probes)
+            EXPECT_EQ(p.position.z, 9 * 1024);
         EXPECT_EQ(scene.place(0, 0).report.candidates, 256u);
     }
 }
@@ -95,7 +108,9 @@ TEST(GroundPlacement, DownFacingSurfacesProposeNothing) {
 
 TEST(GroundPlacement, ThinTwoSidedRoofCarriesAndCovers) {
     AnalyticScene scene;
-    scene.floors = [](glm::vec2, std::vector<ColumnHit>& hits) { hits = {{8, true, true}, {0, true, false}}; };
+    scene.floors = [](glm::vec2, std::vector<ColumnHit>& hits) {
+        hits = {{8, true, true}, {0, true, false}};
+    };
     EXPECT_EQ(scene.place(0, 0).report.candidates, 2u * 256u);
 }
 
@@ -103,14 +118,21 @@ TEST(GroundPlacement, DoubleHitsAtSharedEdgesAreHarmless) {
     AnalyticScene doubled;
     doubled.floors = [](glm::vec2 at, std::vector<ColumnHit>& hits) {
         const float z_m = at.x * 0.1f;
-        hits = {{z_m + 12, true, true}, {z_m + 12, true, true}, {z_m + 12, true, true}, {z_m, true, false}, {std::nextafter(z_m, -1000.0f), true, false}};
+        hits = {{z_m + 12, true, true},
+                {z_m + 12, true, true},
+                {z_m + 12, true, true},
+                {z_m, true, false},
+                {std::nextafter(z_m, -1000.0f), true, false}};
     };
     AnalyticScene once;
-    once.floors = [](glm::vec2 at, std::vector<ColumnHit>& hits) { hits = {{at.x * 0.1f + 12, true, true}, {at.x * 0.1f, true, false}}; };
+    once.floors = [](glm::vec2 at, std::vector<ColumnHit>& hits) {
+        hits = {{at.x * 0.1f + 12, true, true}, {at.x * 0.1f, true, false}};
+    };
     const placement::Placement placed = doubled.place(0, 0);
     EXPECT_EQ(placed.report.candidates, 2u * 256u);
     EXPECT_EQ(keys(placed.probes).size(), keys(once.place(0, 0).probes).size());
-    for (std::size_t n = 0; n < placed.probes.size(); ++n) EXPECT_LE(squared_distance(placed.probes[n].position, once.place(0, 0).probes[n].position), 1);
+    for (std::size_t n = 0; n < placed.probes.size(); ++n)
+        EXPECT_LE(squared_distance(placed.probes[n].position, once.place(0, 0).probes[n].position), 1);
 }
 
 TEST(GroundPlacement, ExactlyTheMinimalDistanceIsFarEnough) {
@@ -130,7 +152,8 @@ TEST(LatticeClass, ColumnsOfOneClassNeverCompete) {
                 const std::uint32_t c = placement::lattice_class_of(a, b, stride);
                 EXPECT_LT(c, stride * stride);
                 const auto [entry, added] = seen.try_emplace(c, a, b);
-                EXPECT_TRUE(added || ((a - entry->second.first) % n == 0 && (b - entry->second.second) % n == 0));
+                EXPECT_TRUE(added ||
+                            ((a - entry->second.first) % n == 0 && (b - entry->second.second) % n == 0));
             }
         }
         EXPECT_EQ(seen.size(), stride * stride);

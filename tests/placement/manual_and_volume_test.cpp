@@ -18,7 +18,9 @@ TEST(ManualProbe, StaysExactlyWhereItIsAndWins) {
     const placement::Placement placed = scene.place(0, 0);
     ASSERT_EQ(placed.probes.size(), 4u);
     for (const glm::dvec3& m : scene.manual) {
-        EXPECT_TRUE(std::any_of(placed.probes.begin(), placed.probes.end(), [&](const PlacedProbe& p) { return p.kind == Kind::manual && glm::dvec3(p.position) == m * 1024.0; }));
+        EXPECT_TRUE(std::any_of(placed.probes.begin(), placed.probes.end(), [&](const PlacedProbe& p) {
+            return p.kind == Kind::manual && glm::dvec3(p.position) == m * 1024.0;
+        }));
     }
 }
 
@@ -40,7 +42,8 @@ TEST(NoProbesVolume, RemovesWhatIsInsideAndCounts) {
     const placement::Placement placed = scene.place(0, 0);
     EXPECT_EQ(placed.report.removed_by_volume, 128u);
     EXPECT_FALSE(placed.probes.empty());
-    for (const PlacedProbe& p : placed.probes) EXPECT_GT(p.position.x, 32 * 1024);
+    for (const PlacedProbe& p : placed.probes)
+        EXPECT_GT(p.position.x, 32 * 1024);
     scene.no_probes = {box_volume({0, 0, 1.5}, {32, 64, 9})};
     EXPECT_EQ(scene.place(0, 0).report.removed_by_volume, 0u) << "above the probes";
 }
@@ -48,9 +51,12 @@ TEST(NoProbesVolume, RemovesWhatIsInsideAndCounts) {
 TEST(NoProbesVolume, RemovedProbeTakesNoPlaceFromAnother) {
     AnalyticScene scene = flat_ground();
     // The four of the first class around the column at (14, 14).
-    for (const glm::dvec3& at : {glm::dvec3(10, 10, 1), glm::dvec3(18, 10, 1), glm::dvec3(10, 18, 1), glm::dvec3(18, 18, 1)}) scene.no_probes.push_back(box_volume(at - 1.0, at + 1.0));
+    for (const glm::dvec3& at :
+         {glm::dvec3(10, 10, 1), glm::dvec3(18, 10, 1), glm::dvec3(10, 18, 1), glm::dvec3(18, 18, 1)})
+        scene.no_probes.push_back(box_volume(at - 1.0, at + 1.0));
     const placement::Placement placed = scene.place(0, 0);
-    EXPECT_TRUE(std::any_of(placed.probes.begin(), placed.probes.end(), [](const PlacedProbe& p) { return p.position == Position(14, 14, 1) * 1024; }));
+    EXPECT_TRUE(std::any_of(placed.probes.begin(), placed.probes.end(),
+                            [](const PlacedProbe& p) { return p.position == Position(14, 14, 1) * 1024; }));
 }
 
 TEST(Placement, OrderOfInputsIsIrrelevant) {
@@ -61,7 +67,8 @@ TEST(Placement, OrderOfInputsIsIrrelevant) {
         scene.manual.emplace_back(uniform(64), uniform(64), uniform(9));
         const glm::vec3 low(uniform(60), uniform(60), uniform(6));
         scene.vegetation.push_back({low, low + glm::vec3(9, 9, 12)});
-        if (n % 8 == 0) scene.no_probes.push_back(box_volume(glm::dvec3(low), glm::dvec3(low) + 7.0));
+        if (n % 8 == 0)
+            scene.no_probes.push_back(box_volume(glm::dvec3(low), glm::dvec3(low) + 7.0));
     }
     scene.manual.push_back(scene.manual[3]);  // the same twice is one
     const std::vector<ProbeKey> before = keys(scene.place(0, 0).probes);
@@ -71,7 +78,9 @@ TEST(Placement, OrderOfInputsIsIrrelevant) {
         std::shuffle(scene.no_probes.begin(), scene.no_probes.end(), random);
         EXPECT_EQ(keys(scene.place(0, 0).probes), before);
     }
-    EXPECT_EQ(static_cast<std::size_t>(std::count_if(before.begin(), before.end(), [](const ProbeKey& k) { return std::get<3>(k) == 2; })), 40u);
+    EXPECT_EQ(static_cast<std::size_t>(std::count_if(before.begin(), before.end(),
+                                                     [](const ProbeKey& k) { return std::get<3>(k) == 2; })),
+              40u);
 }
 
 TEST(Placement, ProbesStandManualFirstThenByRowAndColumn) {

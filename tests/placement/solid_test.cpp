@@ -1,9 +1,9 @@
 // Probes inside solids: moved out by at most half the spacing, or dropped and counted.
 #include "tests/placement/analytic_scene.h"
 
+#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 
@@ -14,7 +14,8 @@ namespace {
 AnalyticScene one_column() {
     AnalyticScene scene;
     scene.floors = [](glm::vec2 at, std::vector<ColumnHit>& hits) {
-        if (at == glm::vec2(2, 2)) hits.push_back({0, true, false});
+        if (at == glm::vec2(2, 2))
+            hits.push_back({0, true, false});
     };
     return scene;
 }
@@ -23,7 +24,8 @@ constexpr glm::ivec3 start(2048, 2048, 1024);
 
 TEST(SolidPlacement, ProbeInASolidIsMovedOutByAtMostHalfTheSpacing) {
     AnalyticScene scene = one_column();
-    for (const Box& solid : {Box{{0, 0, 0}, {4, 4, 2}}, Box{{1, 1, -3}, {6, 6, 5}}, Box{{-3, 0, -5}, {2.5f, 20, 20}}}) {
+    for (const Box& solid :
+         {Box{{0, 0, 0}, {4, 4, 2}}, Box{{1, 1, -3}, {6, 6, 5}}, Box{{-3, 0, -5}, {2.5f, 20, 20}}}) {
         scene.solids = {solid};
         const placement::Placement placed = scene.place(0, 0);
         ASSERT_EQ(placed.probes.size(), 1u);
@@ -51,10 +53,13 @@ TEST(SolidPlacement, QuarterOfTheRaysIsTheLimit) {
         const AnalyticScene scene = one_column();
         placement::Surroundings surroundings = scene.surroundings();
         bool asked = false;
-        surroundings.backs_met = [&](const glm::vec3& origin, std::span<const glm::vec3> directions) -> std::size_t {
+        surroundings.backs_met = [&](const glm::vec3& origin,
+                                     std::span<const glm::vec3> directions) -> std::size_t {
             EXPECT_EQ(directions.size(), 26u);
-            for (const glm::vec3& direction : directions) EXPECT_NEAR(glm::dot(direction, direction), 1, 1e-6);
-            if (origin != placement::metres(start) || std::exchange(asked, true)) return 0;
+            for (const glm::vec3& direction : directions)
+                EXPECT_NEAR(glm::dot(direction, direction), 1, 1e-6);
+            if (origin != placement::metres(start) || std::exchange(asked, true))
+                return 0;
             return static_cast<std::size_t>(backs);
         };
         const auto placed = placement::place_probes({0, 0, {}, {}, {}}, surroundings, {});
@@ -66,10 +71,12 @@ TEST(SolidPlacement, QuarterOfTheRaysIsTheLimit) {
 TEST(SolidPlacement, BuriedProbeTakesNoPlaceFromAGoodOne) {
     AnalyticScene scene = flat_ground();
     // Posts over the four of the first class around the column at (14, 14).
-    for (const glm::vec2 at : {glm::vec2(10, 10), glm::vec2(18, 10), glm::vec2(10, 18), glm::vec2(18, 18)}) scene.solids.push_back({{at - 1.2f, -30}, {at + 1.2f, 30}});
+    for (const glm::vec2 at : {glm::vec2(10, 10), glm::vec2(18, 10), glm::vec2(10, 18), glm::vec2(18, 18)})
+        scene.solids.push_back({{at - 1.2f, -30}, {at + 1.2f, 30}});
     const placement::Placement placed = scene.place(0, 0);
     EXPECT_GE(least_squared_distance(placed.probes), squared_units(6));
-    EXPECT_TRUE(std::any_of(placed.probes.begin(), placed.probes.end(), [](const PlacedProbe& p) { return p.position == Position(14, 14, 1) * 1024; }));
+    EXPECT_TRUE(std::any_of(placed.probes.begin(), placed.probes.end(),
+                            [](const PlacedProbe& p) { return p.position == Position(14, 14, 1) * 1024; }));
 }
 
 TEST(SolidPlacement, MovedProbeStaysInItsSectorAndYields) {

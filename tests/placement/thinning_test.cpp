@@ -17,7 +17,8 @@ AnalyticScene tower(int floors) {
 
 std::vector<glm::dvec3> manual_row(std::size_t count, double z_m) {
     std::vector<glm::dvec3> probes;
-    for (std::size_t n = 0; n < count; ++n) probes.emplace_back(0.1 + 0.2 * static_cast<double>(n), 3, z_m);
+    for (std::size_t n = 0; n < count; ++n)
+        probes.emplace_back(0.1 + 0.2 * static_cast<double>(n), 3, z_m);
     return probes;
 }
 
@@ -25,7 +26,8 @@ TEST(Thinning, SectorOfExactlyTheLimitIsLeftAlone) {
     AnalyticScene scene = flat_ground();
     const auto whole = scene.floors;
     scene.floors = [whole](glm::vec2 at, std::vector<ColumnHit>& hits) {
-        if (at != glm::vec2(2, 2)) whole(at, hits);
+        if (at != glm::vec2(2, 2))
+            whole(at, hits);
     };
     const placement::Placement placed = scene.place(0, 0, 4);
     EXPECT_EQ(placed.probes.size(), 255u);
@@ -81,7 +83,8 @@ TEST(Thinning, MoreManualProbesThanFitAreASentence) {
     ASSERT_FALSE(placed.has_value());
     EXPECT_NE(placed.error().find("sector (0, 0)"), std::string::npos) << placed.error();
     EXPECT_NE(placed.error().find("256"), std::string::npos) << placed.error();
-    EXPECT_TRUE(placement::place_probes({1, 0, {}, scene.manual, {}}, scene.surroundings(), {}).has_value()) << "the neighbour is fine";
+    EXPECT_TRUE(placement::place_probes({1, 0, {}, scene.manual, {}}, scene.surroundings(), {}).has_value())
+        << "the neighbour is fine";
 }
 
 }  // namespace

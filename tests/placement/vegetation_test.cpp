@@ -21,7 +21,9 @@ std::vector<int> heights(const AnalyticScene& scene) {
     return result;
 }
 
-Box column_box(float low_m, float high_m) { return {{9, 9, low_m}, {15, 15, high_m}}; }
+Box column_box(float low_m, float high_m) {
+    return {{9, 9, low_m}, {15, 15, high_m}};
+}
 
 TEST(VegetationPlacement, TreeCarriesAProbeOnItsBox) {
     AnalyticScene scene;
@@ -37,9 +39,11 @@ TEST(VegetationPlacement, TreeBetweenTheColumnsCarriesNone) {
 
 TEST(VegetationPlacement, OverlappingBoxesAreOneThicket) {
     AnalyticScene scene;
-    scene.vegetation = {column_box(0, 10), column_box(8, 14), column_box(2, 5), column_box(14, 16), column_box(40, 44)};
+    scene.vegetation = {column_box(0, 10), column_box(8, 14), column_box(2, 5), column_box(14, 16),
+                        column_box(40, 44)};
     EXPECT_EQ(heights(scene), (std::vector<int>{17, 45}));
-    std::sort(scene.vegetation.begin(), scene.vegetation.end(), [](const Box& a, const Box& b) { return a.high.z > b.high.z; });
+    std::sort(scene.vegetation.begin(), scene.vegetation.end(),
+              [](const Box& a, const Box& b) { return a.high.z > b.high.z; });
     EXPECT_EQ(heights(scene), (std::vector<int>{17, 45}));
 }
 

@@ -31,23 +31,30 @@ struct ProbeResult {
 
 Compared compared(std::int16_t code, float scale, double reference, double error, std::string name) {
     const double rounding = static_cast<double>(scale) / 32767 / std::sqrt(12.0);
-    return {static_cast<double>(decode_fixed(code, scale)), reference, std::hypot(error, rounding), 0, std::move(name)};
+    return {static_cast<double>(decode_fixed(code, scale)), reference, std::hypot(error, rounding), 0,
+            std::move(name)};
 }
 
 // The product's noise in a number is judged against the mean of those around it.
-void set_scale(std::vector<Compared>& numbers, std::size_t first, const std::vector<Compared>& of, std::size_t of_first) {
+void set_scale(std::vector<Compared>& numbers, std::size_t first, const std::vector<Compared>& of,
+               std::size_t of_first) {
     double mean = 0;
-    for (std::size_t n = of_first; n < of.size(); ++n) mean += std::abs(of[n].reference) / static_cast<double>(of.size() - of_first);
-    for (std::size_t n = first; n < numbers.size(); ++n) numbers[n].scale = mean;
+    for (std::size_t n = of_first; n < of.size(); ++n)
+        mean += std::abs(of[n].reference) / static_cast<double>(of.size() - of_first);
+    for (std::size_t n = first; n < numbers.size(); ++n)
+        numbers[n].scale = mean;
 }
 
-std::string indices(std::size_t c, std::size_t b) { return std::string(1, channel_names[c]) + "[" + std::to_string(b) + "]"; }
+std::string indices(std::size_t c, std::size_t b) {
+    return std::string(1, channel_names[c]) + "[" + std::to_string(b) + "]";
+}
 
 class Comparison {
   public:
     Comparison(const Sector& sector, const CheckSettings& settings) : sector_(sector), settings_(settings) {
         const std::size_t count = std::min(settings.probes, sector.probes.size());
-        for (std::size_t n = 0; n < count; ++n) chosen_.push_back((2 * n + 1) * sector.probes.size() / (2 * count));
+        for (std::size_t n = 0; n < count; ++n)
+            chosen_.push_back((2 * n + 1) * sector.probes.size() / (2 * count));
     }
 
     [[nodiscard]] const std::vector<std::size_t>& chosen() const { return chosen_; }
@@ -59,7 +66,8 @@ class Comparison {
 
     // What rays within reach of the chosen probes can meet.
     [[nodiscard]] Region region() const {
-        Region region{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
+        Region region{glm::dvec3(std::numeric_limits<double>::infinity()),
+                      glm::dvec3(-std::numeric_limits<double>::infinity())};
         for (const std::size_t probe : chosen_) {
             region.low = glm::min(region.low, position(probe) - reach());
             region.high = glm::max(region.high, position(probe) + reach());
@@ -70,33 +78,55 @@ class Comparison {
     [[nodiscard]] ProbeResult run(const Scene& scene, std::size_t probe) const {
         ProbeResult result;
         add_light(scene, probe, result);
-        if (sector_.local_transfer && settings_.local > 0) add_local(scene, probe, result);
+        if (sector_.local_transfer && settings_.local > 0)
+            add_local(scene, probe, result);
         return result;
     }
 
   private:
     [[nodiscard]] double reach() const { return static_cast<double>(sector_.bake.reach_m); }
-    [[nodiscard]] std::uint64_t seed(std::size_t probe, std::uint64_t use) const { return settings_.seed << 20 | use << 16 | probe; }
-    [[nodiscard]] std::uint32_t strata(std::uint64_t paths_a_stratum) const { return static_cast<std::uint32_t>(std::max(1.0, std::ceil(std::sqrt(static_cast<double>(settings_.paths) / static_cast<double>(paths_a_stratum))))); }
+    [[nodiscard]] std::uint64_t seed(std::size_t probe, std::uint64_t use) const {
+        return settings_.seed << 20 | use << 16 | probe;
+    }
+    [[nodiscard]] std::uint32_t strata(std::uint64_t paths_a_stratum) const {
+        return static_cast<std::uint32_t>(
+            std::max(1.0, std::ceil(std::sqrt(static_cast<double>(settings_.paths) /
+                                              static_cast<double>(paths_a_stratum)))));
+    }
 
     void add_light(const Scene& scene, std::size_t number, ProbeResult& result) const {
-        const Options options{.bounces = sector_.bake.bounces, .reach_m = reach(), .batches = batches, .strata = strata(batches * continuation_strata * continuation_strata), .continuation_strata = continuation_strata, .seed = seed(number, 1)};
+        const Options options{.bounces = sector_.bake.bounces,
+                              .reach_m = reach(),
+                              .batches = batches,
+                              .strata = strata(batches * continuation_strata * continuation_strata),
+                              .continuation_strata = continuation_strata,
+                              .seed = seed(number, 1)};
         const Estimate estimate = integrate(scene, position(number), options);
         const Probe& probe = sector_.probes[number];
-        for (std::size_t b = 0; b < 3; ++b) result.visibility.push_back(compared(probe.sky_visibility[b], sky_visibility_scale, estimate.sky_visibility[b], estimate.visibility_error[b], "[" + std::to_string(b) + "]"));
+        for (std::size_t b = 0; b < 3; ++b)
+            result.visibility.push_back(compared(probe.sky_visibility[b], sky_visibility_scale,
+                                                 estimate.sky_visibility[b], estimate.visibility_error[b],
+                                                 "[" + std::to_string(b) + "]"));
         set_scale(result.visibility, 0, result.visibility, 0);
         for (std::size_t c = 0; c < drtv::channel_count; ++c) {
             const std::size_t first = c * drtv::basis_count;
             for (std::size_t b = 0; b < drtv::basis_count; ++b) {
                 for (std::size_t i = 0; i < drtv::sh_count; ++i) {
-                    result.transfer[i].push_back(compared(probe.transfer[c][b][i], transfer_scale, estimate.transfer[c][b][i], estimate.transfer_error[c][b][i], indices(c, b)));
+                    result.transfer[i].push_back(compared(probe.transfer[c][b][i], transfer_scale,
+                                                          estimate.transfer[c][b][i],
+                                                          estimate.transfer_error[c][b][i], indices(c, b)));
                 }
-                if (sector_.static_irradiance.empty()) continue;
+                if (sector_.static_irradiance.empty())
+                    continue;
                 const StaticIrradiance& light = sector_.static_irradiance[number];
-                result.statics.push_back(compared(light.codes[c][b], scale_of_exponent(light.exponent), estimate.static_irradiance[c][b], estimate.static_error[c][b], indices(c, b)));
+                result.statics.push_back(compared(light.codes[c][b], scale_of_exponent(light.exponent),
+                                                  estimate.static_irradiance[c][b],
+                                                  estimate.static_error[c][b], indices(c, b)));
             }
-            for (auto& numbers : result.transfer) set_scale(numbers, first, result.transfer[0], first);
-            if (!result.statics.empty()) set_scale(result.statics, first, result.statics, first);
+            for (auto& numbers : result.transfer)
+                set_scale(numbers, first, result.transfer[0], first);
+            if (!result.statics.empty())
+                set_scale(result.statics, first, result.statics, first);
         }
     }
 
@@ -109,17 +139,29 @@ class Comparison {
         std::vector<Pair> pairs;
         std::size_t index = receiver.first_pair;
         for (std::size_t s = 0; s < local.sources.size(); ++s) {
-            if (!has_pair(receiver, s)) continue;
-            if (local.sources[s].di == 0 && local.sources[s].dj == 0) pairs.push_back({s, index});
+            if (!has_pair(receiver, s))
+                continue;
+            if (local.sources[s].di == 0 && local.sources[s].dj == 0)
+                pairs.push_back({s, index});
             ++index;
         }
         Random random(seed(number, 2));
-        for (std::size_t n = 0; n < pairs.size(); ++n) std::swap(pairs[n], pairs[n + static_cast<std::size_t>(random.next() * static_cast<double>(pairs.size() - n))]);
+        for (std::size_t n = 0; n < pairs.size(); ++n)
+            std::swap(
+                pairs[n],
+                pairs[n + static_cast<std::size_t>(random.next() * static_cast<double>(pairs.size() - n))]);
         pairs.resize(std::min(pairs.size(), settings_.local));
         std::vector<glm::dvec3> sources;
-        for (const Pair& pair : pairs) sources.push_back(position(local.sources[pair.source].probe));
-        const std::uint32_t bounces = sector_.convergence ? std::max(1u, sector_.convergence->local_bounces) : 1;
-        const auto estimates = integrate_local(scene, position(number), sources, {.bounces = bounces, .reach_m = reach(), .batches = batches, .strata = strata(batches), .seed = seed(number, 3)});
+        for (const Pair& pair : pairs)
+            sources.push_back(position(local.sources[pair.source].probe));
+        const std::uint32_t bounces =
+            sector_.convergence ? std::max(1u, sector_.convergence->local_bounces) : 1;
+        const auto estimates = integrate_local(scene, position(number), sources,
+                                               {.bounces = bounces,
+                                                .reach_m = reach(),
+                                                .batches = batches,
+                                                .strata = strata(batches),
+                                                .seed = seed(number, 3)});
         for (std::size_t n = 0; n < pairs.size(); ++n) {
             const LocalSource& source = local.sources[pairs[n].source];
             const float scale = scale_of_exponent(receiver.exponent + source.exponent);
@@ -127,10 +169,13 @@ class Comparison {
                 const std::size_t first = result.local[0].size();
                 for (std::size_t i = 0; i < drtv::sh_count; ++i) {
                     const std::string name = "at probe " + std::to_string(number) + " " + channel_names[c];
-                    result.local[i].push_back(compared(local.pairs[pairs[n].index][c][i], scale, estimates[n].transfer[c][i], estimates[n].transfer_error[c][i], name));
+                    result.local[i].push_back(compared(local.pairs[pairs[n].index][c][i], scale,
+                                                       estimates[n].transfer[c][i],
+                                                       estimates[n].transfer_error[c][i], name));
                 }
                 result.local_source.push_back(source.probe);
-                for (auto& numbers : result.local) set_scale(numbers, first, result.local[0], first);
+                for (auto& numbers : result.local)
+                    set_scale(numbers, first, result.local[0], first);
             }
         }
     }
@@ -151,7 +196,8 @@ std::vector<Quantity> compare(const map::Map& map, const Sector& sector, const C
     std::vector<std::jthread> threads;
     for (unsigned t = 0; t < settings.threads; ++t) {
         threads.emplace_back([&] {
-            for (std::size_t n = next++; n < results.size(); n = next++) results[n] = comparison.run(scene, comparison.chosen()[n]);
+            for (std::size_t n = next++; n < results.size(); n = next++)
+                results[n] = comparison.run(scene, comparison.chosen()[n]);
         });
     }
     threads.clear();
@@ -161,28 +207,35 @@ std::vector<Quantity> compare(const map::Map& map, const Sector& sector, const C
         Quantity quantity{name, {}, name != "S"};
         bool any = false;
         for (std::size_t n = 0; n < results.size(); ++n) {
-            quantity.probes.push_back({comparison.position(comparison.chosen()[n]), comparison.chosen()[n], numbers_of(results[n])});
+            quantity.probes.push_back({comparison.position(comparison.chosen()[n]), comparison.chosen()[n],
+                                       numbers_of(results[n])});
             any = any || !quantity.probes.back().numbers.empty();
         }
-        if (any) quantities.push_back(std::move(quantity));
+        if (any)
+            quantities.push_back(std::move(quantity));
     };
     add("v", [](const ProbeResult& r) { return r.visibility; });
-    for (std::size_t i = 0; i < drtv::sh_count; ++i) add(std::string("T ") + sh_names[i], [i](const ProbeResult& r) { return r.transfer[i]; });
+    for (std::size_t i = 0; i < drtv::sh_count; ++i)
+        add(std::string("T ") + sh_names[i], [i](const ProbeResult& r) { return r.transfer[i]; });
     add("S", [](const ProbeResult& r) { return r.statics; });
-    if (!sector.local_transfer || settings.local == 0) return quantities;
+    if (!sector.local_transfer || settings.local == 0)
+        return quantities;
     // By source: its paths may well serve all receivers, so that these err together.
     for (std::size_t i = 0; i < drtv::sh_count; ++i) {
         std::map<std::size_t, ProbeFigures> by_source;
         for (const ProbeResult& result : results) {
             for (std::size_t n = 0; n < result.local[i].size(); ++n) {
                 const std::size_t source = result.local_source[n];
-                const auto [entry, added] = by_source.try_emplace(source, ProbeFigures{comparison.position(source), source, {}});
+                const auto [entry, added] =
+                    by_source.try_emplace(source, ProbeFigures{comparison.position(source), source, {}});
                 entry->second.numbers.push_back(result.local[i][n]);
             }
         }
         Quantity quantity{std::string("R ") + sh_names[i], {}, false};
-        for (auto& [source, figures] : by_source) quantity.probes.push_back(std::move(figures));
-        if (!quantity.probes.empty()) quantities.push_back(std::move(quantity));
+        for (auto& [source, figures] : by_source)
+            quantity.probes.push_back(std::move(figures));
+        if (!quantity.probes.empty())
+            quantities.push_back(std::move(quantity));
     }
     return quantities;
 }

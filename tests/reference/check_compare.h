@@ -21,12 +21,13 @@ struct CheckSettings {
 };
 
 struct Quantity {
-    std::string name;  // "v", "T Y0", ...
+    std::string name;                  // "v", "T Y0", ...
     std::vector<ProbeFigures> probes;  // of R: the sources
     bool even_noise = true;            // the product's noise is about the same share of each probe's mean
 };
 
 // Quantities that the sector does not hold are left out.
-[[nodiscard]] std::vector<Quantity> compare(const map::Map& map, const Sector& sector, const CheckSettings& settings);
+[[nodiscard]] std::vector<Quantity> compare(const map::Map& map, const Sector& sector,
+                                            const CheckSettings& settings);
 
 }  // namespace drtv::reference

@@ -1,5 +1,5 @@
-// Maps for tests, written as glTF 2.0 in memory and read back by the product's own importer. All arguments are in
-// world axes (z up); the builder turns them into glTF's.
+// Maps for tests, written as glTF 2.0 in memory and read back by the product's own importer. All arguments
+// are in world axes (z up); the builder turns them into glTF's.
 #pragma once
 
 #include "bakerd/map/map.h"
@@ -16,8 +16,10 @@
 
 namespace drtv::reference {
 
-// An RGBA picture as PNG, with stored (uncompressed) deflate blocks. REQUIRES: rgba.size() == 4 width height < 65536 - height.
-[[nodiscard]] std::vector<std::uint8_t> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba);
+// An RGBA picture as PNG, with stored (uncompressed) deflate blocks. REQUIRES: rgba.size() == 4 width height
+// < 65536 - height.
+[[nodiscard]] std::vector<std::uint8_t> encode_png(std::uint32_t width, std::uint32_t height,
+                                                   std::span<const std::uint8_t> rgba);
 
 // Triangles of one material; counter-clockwise is the front. `uvs` and `colours` are empty or one a position.
 struct Patch {
@@ -84,7 +86,8 @@ class GltfBuilder {
     int add_view(std::span<const std::uint8_t> bytes);
     void use_extension(const std::string& name);
 
-    nlohmann::json root_ = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", nlohmann::json::array()}}}}};
+    nlohmann::json root_ = {
+        {"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", nlohmann::json::array()}}}}};
 };
 
 }  // namespace drtv::reference

@@ -1,5 +1,6 @@
-// The reference against answers known on paper: what all of its tests share. L below is what a surface sends back when
-// the sky's radiance is Y_i: albedo / pi times the integral of the cosine and Y_i over the sky that it sees.
+// The reference against answers known on paper: what all of its tests share. L below is what a surface sends
+// back when the sky's radiance is Y_i: albedo / pi times the integral of the cosine and Y_i over the sky that
+// it sees.
 #pragma once
 
 #include "tests/reference/gltf_builder.h"
@@ -18,8 +19,8 @@ namespace drtv::reference {
 using std::numbers::pi;
 using Radiance = std::array<double, sh_count>;
 
-// Seeds are fixed, so a test that passes stays passed; 5 standard errors (32 batches) leave a new seed 1 chance in
-// 40 over all numbers here together.
+// Seeds are fixed, so a test that passes stays passed; 5 standard errors (32 batches) leave a new seed 1
+// chance in 40 over all numbers here together.
 inline constexpr double sigmas = 5;
 // A test whose noise grew past this would say nothing: under 0.4 % of the largest answers.
 inline constexpr double largest_transfer_error = 0.001, largest_visibility_error = 0.004;
@@ -33,7 +34,8 @@ inline constexpr double albedo_r = 0.5, albedo_g = 0.25, albedo_b = 0.9;
 inline constexpr std::array<double, channel_count> albedo = {albedo_r, albedo_g, albedo_b};
 inline constexpr glm::vec4 colour_rgb(0.5f, 0.25f, 0.9f, 1);
 
-inline map::Map one_patch(const Patch& patch, const Surfacing& surfacing, const Placement& placement = {}, const std::string& role = "static") {
+inline map::Map one_patch(const Patch& patch, const Surfacing& surfacing, const Placement& placement = {},
+                          const std::string& role = "static") {
     GltfBuilder builder;
     builder.place(builder.add_mesh(patch, builder.add_material(surfacing)), placement, role);
     return builder.import();
@@ -41,7 +43,8 @@ inline map::Map one_patch(const Patch& patch, const Surfacing& surfacing, const 
 
 inline Patch ground_patch() {
     Patch patch;
-    patch.add_quad({-infinite_m, -infinite_m, 0}, {infinite_m, -infinite_m, 0}, {infinite_m, infinite_m, 0}, {-infinite_m, infinite_m, 0});
+    patch.add_quad({-infinite_m, -infinite_m, 0}, {infinite_m, -infinite_m, 0}, {infinite_m, infinite_m, 0},
+                   {-infinite_m, infinite_m, 0});
     return patch;
 }
 
@@ -51,7 +54,8 @@ inline void expect_transfer(const Estimate& estimate, const Transfer& expected, 
             for (std::size_t i = 0; i < sh_count; ++i) {
                 const double error = estimate.transfer_error[c][b][i];
                 EXPECT_LT(error, largest_transfer_error);
-                EXPECT_NEAR(estimate.transfer[c][b][i], expected[c][b][i], sigmas * error + allowance) << "channel " << c << ", basis " << b << ", SH " << i;
+                EXPECT_NEAR(estimate.transfer[c][b][i], expected[c][b][i], sigmas * error + allowance)
+                    << "channel " << c << ", basis " << b << ", SH " << i;
             }
         }
     }
@@ -60,16 +64,20 @@ inline void expect_transfer(const Estimate& estimate, const Transfer& expected, 
 inline void expect_visibility(const Estimate& estimate, const Visibility& expected, double allowance) {
     for (std::size_t b = 0; b < basis_count; ++b) {
         EXPECT_LT(estimate.visibility_error[b], largest_visibility_error);
-        EXPECT_NEAR(estimate.sky_visibility[b], expected[b], sigmas * estimate.visibility_error[b] + allowance) << "basis " << b;
+        EXPECT_NEAR(estimate.sky_visibility[b], expected[b],
+                    sigmas * estimate.visibility_error[b] + allowance)
+            << "basis " << b;
     }
 }
 
 // Surfaces that all send back albedo x `unit`, as seen around b with the weight share[b].
-inline Transfer uniform_transfer(const Radiance& unit, const std::array<double, basis_count>& share, const std::array<double, channel_count>& reflectances = albedo) {
+inline Transfer uniform_transfer(const Radiance& unit, const std::array<double, basis_count>& share,
+                                 const std::array<double, channel_count>& reflectances = albedo) {
     Transfer transfer{};
     for (std::size_t c = 0; c < channel_count; ++c) {
         for (std::size_t b = 0; b < basis_count; ++b) {
-            for (std::size_t i = 0; i < sh_count; ++i) transfer[c][b][i] = reflectances[c] * unit[i] * share[b];
+            for (std::size_t i = 0; i < sh_count; ++i)
+                transfer[c][b][i] = reflectances[c] * unit[i] * share[b];
         }
     }
     return transfer;
@@ -78,7 +86,8 @@ inline Transfer uniform_transfer(const Radiance& unit, const std::array<double, 
 // Of the cosine around b, the part on the side of the plane to which `normal` points.
 inline std::array<double, basis_count> half_space_share(const glm::dvec3& normal) {
     std::array<double, basis_count> share{};
-    for (std::size_t b = 0; b < basis_count; ++b) share[b] = (1 + glm::dot(basis[b], normal)) / 2;
+    for (std::size_t b = 0; b < basis_count; ++b)
+        share[b] = (1 + glm::dot(basis[b], normal)) / 2;
     return share;
 }
 

@@ -1,7 +1,7 @@
 // reference_check MAP SECTOR.drtv [options]: a baked file beside the slow reference.
 //
-// Exit 0: no quantity is systematically off by more than 0.2 % of its mean, as far as 3 standard errors tell; 1: one is;
-// 2: a file or an option is no good.
+// Exit 0: no quantity is systematically off by more than 0.2 % of its mean, as far as 3 standard errors tell;
+// 1: one is; 2: a file or an option is no good.
 #include "bakerd/map/file_source.h"
 #include "bakerd/map/import.h"
 #include "tests/reference/check_compare.h"
@@ -23,13 +23,15 @@ namespace {
 constexpr double largest_systematic = 0.002;
 
 constexpr const char* usage =
-    "usage: reference_check MAP.glb SECTOR.drtv [--probes N] [--paths P] [--seed S] [--local PAIRS] [--threads N] [--product-error E]\n"
+    "usage: reference_check MAP.glb SECTOR.drtv [--probes N] [--paths P] [--seed S] [--local PAIRS] "
+    "[--threads N] [--product-error E]\n"
     "  --probes N         probes, spread over the sector's list (32)\n"
     "  --paths P          the reference's paths a probe (131072)\n"
     "  --seed S           another seed, another noise (1)\n"
     "  --local PAIRS      sources a probe for local transfer, 0 for none (4)\n"
     "  --threads N        (2)\n"
-    "  --product-error E  standard error of the baked numbers, relative to the probe's mean: for the second chi^2, and for a\n"
+    "  --product-error E  standard error of the baked numbers, relative to the probe's mean: for the second "
+    "chi^2, and for a\n"
     "                     sharper verdict on v and T where probes are few or differ much (0: not known)\n";
 
 struct Arguments {
@@ -47,7 +49,8 @@ Arguments parse(int argc, char** argv) {
             files.push_back(option);
             continue;
         }
-        if (n + 1 == argc) throw std::invalid_argument(option + " needs a value");
+        if (n + 1 == argc)
+            throw std::invalid_argument(option + " needs a value");
         const std::string text = argv[++n];
         std::size_t used = 0;
         double value = -1;
@@ -55,16 +58,25 @@ Arguments parse(int argc, char** argv) {
             value = std::stod(text, &used);
         } catch (const std::exception&) {
         }
-        if (used != text.size() || !(value >= 0 && value <= 1e12)) throw std::invalid_argument(option + " cannot be '" + text + "'");
-        if (option == "--probes") arguments.settings.probes = static_cast<std::size_t>(value);
-        else if (option == "--paths") arguments.settings.paths = static_cast<std::uint64_t>(value);
-        else if (option == "--seed") arguments.settings.seed = static_cast<std::uint64_t>(value);
-        else if (option == "--local") arguments.settings.local = static_cast<std::size_t>(value);
-        else if (option == "--threads") arguments.settings.threads = static_cast<unsigned>(value);
-        else if (option == "--product-error") arguments.product_error = value;
-        else throw std::invalid_argument("no option " + option);
+        if (used != text.size() || !(value >= 0 && value <= 1e12))
+            throw std::invalid_argument(option + " cannot be '" + text + "'");
+        if (option == "--probes")
+            arguments.settings.probes = static_cast<std::size_t>(value);
+        else if (option == "--paths")
+            arguments.settings.paths = static_cast<std::uint64_t>(value);
+        else if (option == "--seed")
+            arguments.settings.seed = static_cast<std::uint64_t>(value);
+        else if (option == "--local")
+            arguments.settings.local = static_cast<std::size_t>(value);
+        else if (option == "--threads")
+            arguments.settings.threads = static_cast<unsigned>(value);
+        else if (option == "--product-error")
+            arguments.product_error = value;
+        else
+            throw std::invalid_argument("no option " + option);
     }
-    if (files.size() != 2 || arguments.settings.probes == 0 || arguments.settings.threads == 0) throw std::invalid_argument("a map and a sector are needed, and at least one probe and thread");
+    if (files.size() != 2 || arguments.settings.probes == 0 || arguments.settings.threads == 0)
+        throw std::invalid_argument("a map and a sector are needed, and at least one probe and thread");
     arguments.map = files[0];
     arguments.sector = files[1];
     return arguments;
@@ -74,7 +86,8 @@ map::Map read_map(const std::string& path) {
     const std::filesystem::path file(path);
     const std::string name = file.filename().string(), folder = file.parent_path().string();
     auto map = map::import_map({&name, 1}, map::folder_source(folder.empty() ? "." : folder));
-    if (!map) throw std::runtime_error(map.error());
+    if (!map)
+        throw std::runtime_error(map.error());
     return std::move(*map);
 }
 
@@ -84,8 +97,10 @@ Sector read_file(const std::string& path) {
     const std::vector<std::uint8_t> bytes(chars.begin(), chars.end());
     Sector sector;
     const ReadStatus status = read_sector(bytes, sector);
-    if (!status.ok()) throw std::runtime_error(path + ": " + status.message);
-    if (sector.probes.empty()) throw std::runtime_error(path + ": it has no probes");
+    if (!status.ok())
+        throw std::runtime_error(path + ": " + status.message);
+    if (sector.probes.empty())
+        throw std::runtime_error(path + ": it has no probes");
     return sector;
 }
 
@@ -97,26 +112,37 @@ void print_worst(const Quantity& quantity, const Figures& figures) {
         product += n.product / static_cast<double>(probe.numbers.size());
         reference += n.reference / static_cast<double>(probe.numbers.size());
     }
-    std::printf("%-5s worst: probe %zu at (%.3f, %.3f, %.3f), mean %.5g, reference %.5g; %s: %.5g, reference %.5g +- %.2g\n", quantity.name.c_str(), probe.number, probe.position.x, probe.position.y,
-                probe.position.z, product, reference, number.name.c_str(), number.product, number.reference, number.error);
+    std::printf(
+        "%-5s worst: probe %zu at (%.3f, %.3f, %.3f), mean %.5g, reference %.5g; %s: %.5g, reference %.5g +- "
+        "%.2g\n",
+        quantity.name.c_str(), probe.number, probe.position.x, probe.position.y, probe.position.z, product,
+        reference, number.name.c_str(), number.product, number.reference, number.error);
 }
 
 int run(const Arguments& arguments) {
     const Sector sector = read_file(arguments.sector);
     const map::Map map = read_map(arguments.map);
-    std::printf("sector %d, %d: %zu probes, %u rays, %u bounces, reach %g m; %s static irradiance, %s local transfer; %zu lights in the map\n", sector.i, sector.j, sector.probes.size(), sector.bake.rays,
-                sector.bake.bounces, static_cast<double>(sector.bake.reach_m), sector.static_irradiance.empty() ? "no" : "with", sector.local_transfer ? "with" : "no", map.lights.size());
+    std::printf(
+        "sector %d, %d: %zu probes, %u rays, %u bounces, reach %g m; %s static irradiance, %s local "
+        "transfer; %zu lights in the map\n",
+        sector.i, sector.j, sector.probes.size(), sector.bake.rays, sector.bake.bounces,
+        static_cast<double>(sector.bake.reach_m), sector.static_irradiance.empty() ? "no" : "with",
+        sector.local_transfer ? "with" : "no", map.lights.size());
     const auto quantities = compare(map, sector, arguments.settings);
-    std::printf("%-5s %6s %7s %11s %9s %9s %9s %9s %9s %8s %8s\n", "", "probes", "numbers", "mean |ref|", "syst. %", "+- %", "median %", "rms %", "ref. %", "chi^2", "with E");
+    std::printf("%-5s %6s %7s %11s %9s %9s %9s %9s %9s %8s %8s\n", "", "probes", "numbers", "mean |ref|",
+                "syst. %", "+- %", "median %", "rms %", "ref. %", "chi^2", "with E");
     bool good = true;
     for (const Quantity& quantity : quantities) {
         const Figures f = figures_of(quantity.probes, arguments.product_error, quantity.even_noise);
         const bool is_off = off(f, largest_systematic);
         good = good && !is_off;
-        std::printf("%-5s %6zu %7zu %11.5g %9.3f %9.3f %9.3f %9.3f %9.3f %8.3f %8.3f%s\n", quantity.name.c_str(), f.probes, f.numbers, f.mean, 100 * f.systematic, 100 * f.systematic_error, 100 * f.median,
-                    100 * f.rms, 100 * f.reference_error, f.chi_squared, f.chi_squared_both, is_off ? "  OFF" : "");
+        std::printf("%-5s %6zu %7zu %11.5g %9.3f %9.3f %9.3f %9.3f %9.3f %8.3f %8.3f%s\n",
+                    quantity.name.c_str(), f.probes, f.numbers, f.mean, 100 * f.systematic,
+                    100 * f.systematic_error, 100 * f.median, 100 * f.rms, 100 * f.reference_error,
+                    f.chi_squared, f.chi_squared_both, is_off ? "  OFF" : "");
     }
-    for (const Quantity& quantity : quantities) print_worst(quantity, figures_of(quantity.probes, arguments.product_error, quantity.even_noise));
+    for (const Quantity& quantity : quantities)
+        print_worst(quantity, figures_of(quantity.probes, arguments.product_error, quantity.even_noise));
     return good ? 0 : 1;
 }
 

@@ -16,8 +16,9 @@ using std::numbers::pi;
 
 // What comes to the probe along one ray.
 struct Radiance {
-    std::array<std::array<double, sh_count>, channel_count> sky{};  // by bounce, when the sky's radiance is Y_i
-    glm::dvec3 lights{};                                            // emission seen and all bounces
+    std::array<std::array<double, sh_count>, channel_count>
+        sky{};            // by bounce, when the sky's radiance is Y_i
+    glm::dvec3 lights{};  // emission seen and all bounces
 };
 
 struct Batch {
@@ -28,9 +29,11 @@ struct Batch {
 
 class Integrator {
   public:
-    Integrator(const Scene& scene, const glm::dvec3& position, const Options& options) : options_(options), walk_{scene, position, options.reach_m, Random(options.seed)} {
+    Integrator(const Scene& scene, const glm::dvec3& position, const Options& options)
+        : options_(options), walk_{scene, position, options.reach_m, Random(options.seed)} {
         for (const map::Light& light : scene.lights()) {
-            if (light.kind == map::LightKind::directional || walk_.within_reach(glm::dvec3(light.position))) lights_.push_back(&light);
+            if (light.kind == map::LightKind::directional || walk_.within_reach(glm::dvec3(light.position)))
+                lights_.push_back(&light);
         }
     }
 
@@ -40,7 +43,8 @@ class Integrator {
         for (std::uint32_t row = 0; row < options_.strata; ++row) {
             add_direct_light(1 / side, batch);
             for (std::uint32_t column = 0; column < options_.strata; ++column) {
-                const double u = (row + walk_.random.next()) / side, v = (column + walk_.random.next()) / side;
+                const double u = (row + walk_.random.next()) / side,
+                             v = (column + walk_.random.next()) / side;
                 add_first_ray(sphere_direction(u, v), 1 / (side * side), batch);
             }
         }
@@ -52,10 +56,12 @@ class Integrator {
     void add_direct_light(double weight, Batch& batch) {
         for (const map::Light* light : lights_) {
             const auto incident = incidence(*light, walk_.probe);
-            if (!incident || !walk_.lit(walk_.probe, *incident)) continue;
+            if (!incident || !walk_.lit(walk_.probe, *incident))
+                continue;
             for (std::size_t b = 0; b < basis_count; ++b) {
                 const double share = weight * std::max(0.0, glm::dot(incident->towards, basis[b])) / pi;
-                for (std::size_t c = 0; c < channel_count; ++c) batch.irradiance[c][b] += share * incident->irradiance[static_cast<glm::length_t>(c)];
+                for (std::size_t c = 0; c < channel_count; ++c)
+                    batch.irradiance[c][b] += share * incident->irradiance[static_cast<glm::length_t>(c)];
             }
         }
     }
@@ -63,43 +69,51 @@ class Integrator {
     void add_first_ray(const glm::dvec3& w, double weight, Batch& batch) {
         const auto hit = walk_.closest(walk_.probe, w);
         if (!hit) {
-            for (std::size_t b = 0; b < basis_count && w.z > 0; ++b) batch.visibility[b] += weight * 4 * pi * std::max(0.0, glm::dot(w, basis[b]));
+            for (std::size_t b = 0; b < basis_count && w.z > 0; ++b)
+                batch.visibility[b] += weight * 4 * pi * std::max(0.0, glm::dot(w, basis[b]));
             return;
         }
         Radiance radiance;
         const double side = options_.continuation_strata;
         for (std::uint32_t row = 0; row < options_.continuation_strata; ++row) {
             for (std::uint32_t column = 0; column < options_.continuation_strata; ++column) {
-                const double u = (row + walk_.random.next()) / side, v = (column + walk_.random.next()) / side;
+                const double u = (row + walk_.random.next()) / side,
+                             v = (column + walk_.random.next()) / side;
                 follow(*hit, w, u, v, 1 / (side * side), radiance);
             }
         }
         for (std::size_t b = 0; b < basis_count; ++b) {
-            const double share = weight * 4 * std::max(0.0, glm::dot(w, basis[b]));  // 1 / pi over the density 1 / (4 pi)
+            const double share =
+                weight * 4 * std::max(0.0, glm::dot(w, basis[b]));  // 1 / pi over the density 1 / (4 pi)
             for (std::size_t c = 0; c < channel_count; ++c) {
-                for (std::size_t i = 0; i < sh_count; ++i) batch.transfer[c][b][i] += share * radiance.sky[c][i];
+                for (std::size_t i = 0; i < sh_count; ++i)
+                    batch.transfer[c][b][i] += share * radiance.sky[c][i];
                 batch.irradiance[c][b] += share * radiance.lights[static_cast<glm::length_t>(c)];
             }
         }
     }
 
-    // One sample of what the surface that `arriving` hit sends back along it, times `weight`. The first direction onward
-    // is made of `u` and `v`.
+    // One sample of what the surface that `arriving` hit sends back along it, times `weight`. The first
+    // direction onward is made of `u` and `v`.
     void follow(SurfaceHit hit, glm::dvec3 arriving, double u, double v, double weight, Radiance& radiance) {
         glm::dvec3 throughput(weight), origin = walk_.probe;
         for (std::uint32_t scattering = 1;; ++scattering) {
-            if (hit.absorbs) return;
+            if (hit.absorbs)
+                return;
             radiance.lights += throughput * hit.emitted;
-            if (scattering > options_.bounces) return;
+            if (scattering > options_.bounces)
+                return;
             const glm::dvec3 point = origin + hit.distance_m * arriving;
             for (const map::Light* light : lights_) {
-                if (const auto incident = incidence(*light, point)) radiance.lights += throughput * walk_.scattered(hit, point, *incident);
+                if (const auto incident = incidence(*light, point))
+                    radiance.lights += throughput * walk_.scattered(hit, point, *incident);
             }
             const Walk::Step step = Walk::onward(hit, point, u, v);
             throughput *= step.weight;
             const auto next = walk_.closest(step.origin, step.direction);
             if (!next) {
-                if (step.direction.z > 0) add_sky(step.direction, throughput, radiance);  // below the horizon it is black
+                if (step.direction.z > 0)
+                    add_sky(step.direction, throughput, radiance);  // below the horizon it is black
                 return;
             }
             hit = *next;
@@ -113,7 +127,8 @@ class Integrator {
     static void add_sky(const glm::dvec3& w, const glm::dvec3& throughput, Radiance& radiance) {
         const std::array<double, sh_count> sh = {y0, y1 * w.y, y1 * w.z, y1 * w.x};
         for (std::size_t c = 0; c < channel_count; ++c) {
-            for (std::size_t i = 0; i < sh_count; ++i) radiance.sky[c][i] += throughput[static_cast<glm::length_t>(c)] * sh[i];
+            for (std::size_t i = 0; i < sh_count; ++i)
+                radiance.sky[c][i] += throughput[static_cast<glm::length_t>(c)] * sh[i];
         }
     }
 
@@ -136,7 +151,8 @@ Estimate integrate(const Scene& scene, const glm::dvec3& position, const Options
             visibility[b].add(open > 1e-9 ? batch.visibility[b] / open : 0);
             for (std::size_t c = 0; c < channel_count; ++c) {
                 irradiance[c][b].add(batch.irradiance[c][b]);
-                for (std::size_t i = 0; i < sh_count; ++i) transfer[c][b][i].add(batch.transfer[c][b][i]);
+                for (std::size_t i = 0; i < sh_count; ++i)
+                    transfer[c][b][i].add(batch.transfer[c][b][i]);
             }
         }
     }

@@ -1,5 +1,5 @@
-// Local radiance transfer by brute force, from DESIGN section 2 alone: paths from the receiver, and at each surface that
-// they touch the light of every source.
+// Local radiance transfer by brute force, from DESIGN section 2 alone: paths from the receiver, and at each
+// surface that they touch the light of every source.
 #pragma once
 
 #include "tests/reference/reference_integrator.h"
@@ -15,8 +15,8 @@ struct LocalEstimate {
     LocalTransfer transfer{}, transfer_error{};  // means and their standard errors
 };
 
-// Paths are batches x strata^2, as for Options; `bounces` is of surfaces that scatter, 1 or more. A source farther from the
-// receiver than the reach sends nothing.
+// Paths are batches x strata^2, as for Options; `bounces` is of surfaces that scatter, 1 or more. A source
+// farther from the receiver than the reach sends nothing.
 struct LocalOptions {
     std::uint32_t bounces = 1;
     double reach_m = 512;
@@ -26,6 +26,8 @@ struct LocalOptions {
 };
 
 // One estimate a source.
-[[nodiscard]] std::vector<LocalEstimate> integrate_local(const Scene& scene, const glm::dvec3& receiver, std::span<const glm::dvec3> sources, const LocalOptions& options);
+[[nodiscard]] std::vector<LocalEstimate> integrate_local(const Scene& scene, const glm::dvec3& receiver,
+                                                         std::span<const glm::dvec3> sources,
+                                                         const LocalOptions& options);
 
 }  // namespace drtv::reference

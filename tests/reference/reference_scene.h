@@ -1,5 +1,6 @@
-// A map as a flat list of world-space triangles in double precision, with a ray query of its own. It shares the
-// map loader with the product and nothing else: no Embree, no instances, no pictures of lesser resolution.
+// A map as a flat list of world-space triangles in double precision, with a ray query of its own. It shares
+// the map loader with the product and nothing else: no Embree, no instances, no pictures of lesser
+// resolution.
 #pragma once
 
 #include "bakerd/map/map.h"
@@ -38,12 +39,14 @@ class Scene {
     // REQUIRES: `map` outlives the scene.
     explicit Scene(const map::Map& map, const Region& region = {});
 
-    // The closest hit along the unit `direction`, or nothing. Masked texels let the ray through, blended ones do so with
-    // the probability that their alpha lacks of 1, drawn anew at each crossing.
-    [[nodiscard]] std::optional<SurfaceHit> closest(const glm::dvec3& origin, const glm::dvec3& direction, Random& random) const;
+    // The closest hit along the unit `direction`, or nothing. Masked texels let the ray through, blended ones
+    // do so with the probability that their alpha lacks of 1, drawn anew at each crossing.
+    [[nodiscard]] std::optional<SurfaceHit> closest(const glm::dvec3& origin, const glm::dvec3& direction,
+                                                    Random& random) const;
 
     // Whether anything lies nearer than `far_m`.
-    [[nodiscard]] bool blocked(const glm::dvec3& origin, const glm::dvec3& direction, double far_m, Random& random) const;
+    [[nodiscard]] bool blocked(const glm::dvec3& origin, const glm::dvec3& direction, double far_m,
+                               Random& random) const;
 
     [[nodiscard]] const std::vector<map::Light>& lights() const { return map_.lights; }
     [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
@@ -51,9 +54,10 @@ class Scene {
   private:
     struct Triangle {
         glm::dvec3 corner, edge1, edge2;
-        std::uint32_t worn = 0;      // index into worn_
-        std::uint32_t number = 0;    // of the primitive's triangles
-        bool twin = false;           // another of the object has its corners and looks the other way: together two fronts
+        std::uint32_t worn = 0;    // index into worn_
+        std::uint32_t number = 0;  // of the primitive's triangles
+        bool twin =
+            false;  // another of the object has its corners and looks the other way: together two fronts
     };
     // A primitive of an object.
     struct Worn {
@@ -67,12 +71,15 @@ class Scene {
 
     void add_object(const map::Object& object, const Region& region);
     void mark_twins(std::size_t first);
-    [[nodiscard]] static std::optional<Crossing> cross(const Triangle& triangle, const glm::dvec3& origin, const glm::dvec3& direction, double far_m);
+    [[nodiscard]] static std::optional<Crossing> cross(const Triangle& triangle, const glm::dvec3& origin,
+                                                       const glm::dvec3& direction, double far_m);
     // Base colour (w is alpha) before clamping.
     [[nodiscard]] glm::dvec4 colour(const Triangle& triangle, const Crossing& at) const;
-    [[nodiscard]] glm::dvec4 picture(const map::TextureView& view, const std::vector<glm::vec2>& uvs, const Triangle& triangle, const Crossing& at) const;
+    [[nodiscard]] glm::dvec4 picture(const map::TextureView& view, const std::vector<glm::vec2>& uvs,
+                                     const Triangle& triangle, const Crossing& at) const;
     [[nodiscard]] bool is_there(const Triangle& triangle, const Crossing& at, Random& random) const;
-    [[nodiscard]] SurfaceHit surface(const Triangle& triangle, const Crossing& at, const glm::dvec3& direction) const;
+    [[nodiscard]] SurfaceHit surface(const Triangle& triangle, const Crossing& at,
+                                     const glm::dvec3& direction) const;
 
     const map::Map& map_;
     std::vector<Worn> worn_;

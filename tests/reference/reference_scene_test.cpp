@@ -19,14 +19,45 @@ struct Sheet {
 };
 
 const Sheet sheets[] = {
-    {"a plant's double-sided leaf", {.base_colour = colour_rgb, .double_sided = true}, "vegetation", {0.5, 0.25, 0.95 * 2 / 3}, {0.25, 0.125, 0.95 / 3}},
-    {"a plant's masked leaf", {.base_colour = colour_rgb, .masked = true}, "vegetation", {0.5, 0.25, 0.95 * 2 / 3}, {0.25, 0.125, 0.95 / 3}},
+    {"a plant's double-sided leaf",
+     {.base_colour = colour_rgb, .double_sided = true},
+     "vegetation",
+     {0.5, 0.25, 0.95 * 2 / 3},
+     {0.25, 0.125, 0.95 / 3}},
+    {"a plant's masked leaf",
+     {.base_colour = colour_rgb, .masked = true},
+     "vegetation",
+     {0.5, 0.25, 0.95 * 2 / 3},
+     {0.25, 0.125, 0.95 / 3}},
     {"a plant's bark", {.base_colour = colour_rgb}, "vegetation", {0.5, 0.25, 0.9}, {0, 0, 0}},
-    {"a double-sided cloth", {.base_colour = colour_rgb, .double_sided = true}, "static", {0.5, 0.25, 0.9}, {0, 0, 0}},
-    {"a one-sided paper", {.base_colour = colour_rgb, .transmission = 0.25, .transmission_colour = {1, 0.4f, 0}}, "static", {0.375, 0.1875, 0.675}, {0.25, 0.1, 0}},
-    {"a plant of paper", {.base_colour = colour_rgb, .double_sided = true, .transmission = 0.25, .transmission_colour = {1, 0.4f, 0}}, "vegetation", {0.375, 0.1875, 0.675}, {0.25, 0.1, 0}},
-    {"a white paper", {.transmission = 0.5}, "static", {0.95 * 0.475 / 0.975, 0.95 * 0.475 / 0.975, 0.95 * 0.475 / 0.975}, {0.95 * 0.5 / 0.975, 0.95 * 0.5 / 0.975, 0.95 * 0.5 / 0.975}},
-    {"a clear sheet", {.base_colour = colour_rgb, .transmission = 1, .transmission_colour = {1, 0.5f, 0.25f}}, "static", {0, 0, 0}, {0.95, 0.5, 0.25}},
+    {"a double-sided cloth",
+     {.base_colour = colour_rgb, .double_sided = true},
+     "static",
+     {0.5, 0.25, 0.9},
+     {0, 0, 0}},
+    {"a one-sided paper",
+     {.base_colour = colour_rgb, .transmission = 0.25, .transmission_colour = {1, 0.4f, 0}},
+     "static",
+     {0.375, 0.1875, 0.675},
+     {0.25, 0.1, 0}},
+    {"a plant of paper",
+     {.base_colour = colour_rgb,
+      .double_sided = true,
+      .transmission = 0.25,
+      .transmission_colour = {1, 0.4f, 0}},
+     "vegetation",
+     {0.375, 0.1875, 0.675},
+     {0.25, 0.1, 0}},
+    {"a white paper",
+     {.transmission = 0.5},
+     "static",
+     {0.95 * 0.475 / 0.975, 0.95 * 0.475 / 0.975, 0.95 * 0.475 / 0.975},
+     {0.95 * 0.5 / 0.975, 0.95 * 0.5 / 0.975, 0.95 * 0.5 / 0.975}},
+    {"a clear sheet",
+     {.base_colour = colour_rgb, .transmission = 1, .transmission_colour = {1, 0.5f, 0.25f}},
+     "static",
+     {0, 0, 0},
+     {0.95, 0.5, 0.25}},
 };
 
 TEST(ReferenceMaterial, SheetSendsLightBackAndThrough) {
@@ -34,33 +65,43 @@ TEST(ReferenceMaterial, SheetSendsLightBackAndThrough) {
         SCOPED_TRACE(sheet.what);
         const map::Map map = one_patch(ground_patch(), sheet.surfacing, {}, sheet.role);
         const Scene scene(map);
-        const Estimate over = integrate(scene, {0, 0, 1}, plane_options), under = integrate(scene, {0, 0, -1}, plane_options);
-        expect_transfer(over, uniform_transfer(ground_sends, half_space_share({0, 0, -1}), sheet.reflected), float_input);
-        expect_transfer(under, uniform_transfer(ground_sends, half_space_share({0, 0, 1}), sheet.transmitted), float_input);
+        const Estimate over = integrate(scene, {0, 0, 1}, plane_options),
+                       under = integrate(scene, {0, 0, -1}, plane_options);
+        expect_transfer(over, uniform_transfer(ground_sends, half_space_share({0, 0, -1}), sheet.reflected),
+                        float_input);
+        expect_transfer(under, uniform_transfer(ground_sends, half_space_share({0, 0, 1}), sheet.transmitted),
+                        float_input);
         expect_visibility(over, {1, 1, 1, 0}, exact_arithmetic);
         expect_visibility(under, {}, exact_arithmetic);
     }
 }
 
 TEST(ReferenceMaterial, TwoSheetsPassLightBetweenThem) {
-    // Through both it takes two scatterings, and two more each time light goes back and forth: t^2 (1 + r^2 + r^4 ...).
+    // Through both it takes two scatterings, and two more each time light goes back and forth: t^2 (1 + r^2 +
+    // r^4 ...).
     GltfBuilder builder;
-    const int mesh = builder.add_mesh(ground_patch(), builder.add_material({.base_colour = {0.6f, 0.3f, 0.4f, 1}, .double_sided = true}));
-    for (const float height : {1.0f, 2.0f}) builder.place(mesh, {.shift_m = {0, 0, height}}, "vegetation");
+    const int mesh = builder.add_mesh(
+        ground_patch(), builder.add_material({.base_colour = {0.6f, 0.3f, 0.4f, 1}, .double_sided = true}));
+    for (const float height : {1.0f, 2.0f})
+        builder.place(mesh, {.shift_m = {0, 0, height}}, "vegetation");
     const map::Map map = builder.import();
     const Scene scene(map);
     const auto sent = [](double r, int passes) {
         double sum = 0;
-        for (int k = 0; k < passes; ++k) sum += r * r / 4 * std::pow(r, 2 * k);
+        for (int k = 0; k < passes; ++k)
+            sum += r * r / 4 * std::pow(r, 2 * k);
         return sum;
     };
-    // Only the first surface sees the sky's directions; what comes through is even, as from a sky of its mean: 2 / 3 of
-    // the sky's Y2 counts, as for ground.
+    // Only the first surface sees the sky's directions; what comes through is even, as from a sky of its
+    // mean: 2 / 3 of the sky's Y2 counts, as for ground.
     for (const auto& [bounces, passes] : {std::pair{1u, 0}, {2u, 1}, {3u, 1}, {4u, 2}}) {
         Options options = plane_options;
         options.bounces = bounces;
         const Estimate under = integrate(scene, {0, 0, 0}, options);
-        expect_transfer(under, uniform_transfer(ground_sends, half_space_share({0, 0, 1}), {sent(0.6, passes), sent(0.3, passes), sent(0.4, passes)}), float_input);
+        expect_transfer(under,
+                        uniform_transfer(ground_sends, half_space_share({0, 0, 1}),
+                                         {sent(0.6, passes), sent(0.3, passes), sent(0.4, passes)}),
+                        float_input);
     }
 }
 
@@ -70,8 +111,10 @@ TEST(ReferenceMaterial, BlendedSurfaceIsThereWithItsAlpha) {
     const map::Map map = one_patch(ground, {.base_colour = {0.5f, 0.25f, 0.9f, 0.6f}, .blended = true});
     const Scene scene(map);
     auto down = half_space_share({0, 0, -1});
-    for (double& share : down) share *= 0.3;
-    expect_transfer(integrate(scene, {0, 0, 1}, plane_options), uniform_transfer(ground_sends, down), float_input);
+    for (double& share : down)
+        share *= 0.3;
+    expect_transfer(integrate(scene, {0, 0, 1}, plane_options), uniform_transfer(ground_sends, down),
+                    float_input);
     expect_visibility(integrate(scene, {0, 0, -1}, {}), {0.7, 0.7, 0.7, 0}, float_input);
 }
 
@@ -79,8 +122,12 @@ TEST(ReferenceMaterial, BlendedSurfaceIsThereWithItsAlpha) {
 Patch soup(Random& random) {
     Patch patch;
     for (std::uint32_t n = 0; n < 3000; ++n) {
-        const auto point = [&](double size) { return glm::vec3(size * (random.next() - 0.5), size * (random.next() - 0.5), size * (random.next() - 0.5)); };
-        const glm::vec3 corner = point(50) + glm::vec3(1000, -2000, 300), long_edge = point(n % 50 == 0 ? 60 : 3);
+        const auto point = [&](double size) {
+            return glm::vec3(size * (random.next() - 0.5), size * (random.next() - 0.5),
+                             size * (random.next() - 0.5));
+        };
+        const glm::vec3 corner = point(50) + glm::vec3(1000, -2000, 300),
+                        long_edge = point(n % 50 == 0 ? 60 : 3);
         patch.positions.insert(patch.positions.end(), {corner, corner + long_edge, corner + point(2)});
         patch.triangles.emplace_back(3 * n, 3 * n + 1, 3 * n + 2);
     }
@@ -88,12 +135,14 @@ Patch soup(Random& random) {
 }
 
 // By the planes of the triangle and of its three edges.
-double distance_to(const std::array<glm::dvec3, 3>& t, const glm::dvec3& origin, const glm::dvec3& direction) {
+double distance_to(const std::array<glm::dvec3, 3>& t, const glm::dvec3& origin,
+                   const glm::dvec3& direction) {
     const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
     const double distance = glm::dot(t[0] - origin, normal) / glm::dot(direction, normal);
     const glm::dvec3 point = origin + distance * direction;
     bool inside = distance > 0;
-    for (std::size_t k = 0; k < 3; ++k) inside = inside && glm::dot(glm::cross(t[(k + 1) % 3] - t[k], point - t[k]), normal) >= 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        inside = inside && glm::dot(glm::cross(t[(k + 1) % 3] - t[k], point - t[k]), normal) >= 0;
     return inside ? distance : std::numeric_limits<double>::infinity();
 }
 
@@ -107,23 +156,30 @@ TEST(ReferenceScene, TreeFindsWhatAllTrianglesTogetherDo) {
     EXPECT_LT(part.triangle_count(), 1500u);
     int hits = 0;
     for (int n = 0; n < 3000; ++n) {
-        const glm::dvec3 origin = centre + 40.0 * (glm::dvec3(random.next(), random.next(), random.next()) - 0.5);
+        const glm::dvec3 origin =
+            centre + 40.0 * (glm::dvec3(random.next(), random.next(), random.next()) - 0.5);
         glm::dvec3 direction = sphere_direction(random.next(), random.next());
-        if (n % 10 == 0) direction = glm::dvec3(n % 20 == 0 ? 1 : 0, 0, n % 20 == 0 ? 0 : -1);  // along an axis
+        if (n % 10 == 0)
+            direction = glm::dvec3(n % 20 == 0 ? 1 : 0, 0, n % 20 == 0 ? 0 : -1);  // along an axis
         double nearest = std::numeric_limits<double>::infinity();
         for (const glm::uvec3& t : primitive.triangles) {
-            const auto world = [&](std::uint32_t at) { return glm::dvec3(glm::dmat4x3(map.objects[0].world_from_object) * glm::dvec4(glm::dvec3(primitive.positions[at]), 1.0)); };
+            const auto world = [&](std::uint32_t at) {
+                return glm::dvec3(glm::dmat4x3(map.objects[0].world_from_object) *
+                                  glm::dvec4(glm::dvec3(primitive.positions[at]), 1.0));
+            };
             nearest = std::min(nearest, distance_to({world(t.x), world(t.y), world(t.z)}, origin, direction));
         }
         const auto hit = scene.closest(origin, direction, random);
         ASSERT_EQ(hit.has_value(), std::isfinite(nearest)) << n;
-        if (!hit) continue;
+        if (!hit)
+            continue;
         ++hits;
         ASSERT_NEAR(hit->distance_m, nearest, exact_arithmetic) << n;
         EXPECT_TRUE(scene.blocked(origin, direction, nearest + 1e-6, random));
         EXPECT_FALSE(scene.blocked(origin, direction, nearest - 1e-6, random));
         const glm::dvec3 point = origin + nearest * direction;
-        const bool kept = glm::all(glm::lessThan(point, centre + 5.0)) && glm::all(glm::greaterThan(point, centre - 30.0));
+        const bool kept =
+            glm::all(glm::lessThan(point, centre + 5.0)) && glm::all(glm::greaterThan(point, centre - 30.0));
         EXPECT_TRUE(!kept || part.blocked(origin, direction, nearest + 1e-6, random));
     }
     EXPECT_GT(hits, 500);

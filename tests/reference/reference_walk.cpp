@@ -22,25 +22,33 @@ glm::dvec3 sphere_direction(double u, double v) {
 
 std::optional<SurfaceHit> Walk::closest(const glm::dvec3& origin, const glm::dvec3& direction) {
     auto hit = scene.closest(origin, direction, random);
-    if (hit && glm::length(origin + hit->distance_m * direction - probe) > reach_m) hit.reset();
+    if (hit && glm::length(origin + hit->distance_m * direction - probe) > reach_m)
+        hit.reset();
     return hit;
 }
 
-bool Walk::within_reach(const glm::dvec3& position) const { return glm::length(position - probe) <= reach_m; }
+bool Walk::within_reach(const glm::dvec3& position) const {
+    return glm::length(position - probe) <= reach_m;
+}
 
 bool Walk::lit(const glm::dvec3& point, const Incidence& light) {
     // Where the way to a directional light leaves the sphere of reach; `point` lies in it.
     const glm::dvec3 from_probe = point - probe;
     const double middle = glm::dot(from_probe, light.towards);
-    const double leaves = -middle + std::sqrt(std::max(0.0, middle * middle + reach_m * reach_m - glm::dot(from_probe, from_probe)));
-    return !scene.blocked(point, light.towards, std::min(leaves, light.distance_m - surface_offset_m), random);
+    const double leaves =
+        -middle +
+        std::sqrt(std::max(0.0, middle * middle + reach_m * reach_m - glm::dot(from_probe, from_probe)));
+    return !scene.blocked(point, light.towards, std::min(leaves, light.distance_m - surface_offset_m),
+                          random);
 }
 
 glm::dvec3 Walk::scattered(const SurfaceHit& hit, const glm::dvec3& point, const Incidence& light) {
     const double cosine = glm::dot(hit.normal, light.towards);
     const glm::dvec3& share = cosine > 0 ? hit.reflected : hit.transmitted;
-    if (cosine == 0 || share == glm::dvec3(0)) return glm::dvec3(0);
-    if (!lit(point + std::copysign(surface_offset_m, cosine) * hit.normal, light)) return glm::dvec3(0);
+    if (cosine == 0 || share == glm::dvec3(0))
+        return glm::dvec3(0);
+    if (!lit(point + std::copysign(surface_offset_m, cosine) * hit.normal, light))
+        return glm::dvec3(0);
     return share / pi * std::abs(cosine) * light.irradiance;
 }
 
@@ -52,7 +60,8 @@ Walk::Step Walk::onward(const SurfaceHit& hit, const glm::dvec3& point, double u
     Step step;
     step.direction = local.x * tangent + local.y * glm::cross(hit.normal, tangent) + local.z * hit.normal;
     step.origin = point + std::copysign(surface_offset_m, local.z) * hit.normal;
-    // Lambert: share / pi, times the cosine, over the density: 1 / (2 pi) of the hemisphere, 1 / (4 pi) of the sphere.
+    // Lambert: share / pi, times the cosine, over the density: 1 / (2 pi) of the hemisphere, 1 / (4 pi) of
+    // the sphere.
     step.weight = (local.z > 0 ? hit.reflected : hit.transmitted) * (std::abs(local.z) * (transmits ? 4 : 2));
     return step;
 }

@@ -1,5 +1,5 @@
-// Steps that all of the reference's integrals are made of: rays within reach of a probe, light that a surface scatters,
-// the next direction, and means with their errors.
+// Steps that all of the reference's integrals are made of: rays within reach of a probe, light that a surface
+// scatters, the next direction, and means with their errors.
 #pragma once
 
 #include "tests/reference/reference_light.h"
@@ -34,13 +34,15 @@ struct Walk {
     [[nodiscard]] bool within_reach(const glm::dvec3& position) const;
 
     // Radiance that the surface at `point` scatters of the light to the side of its normal.
-    [[nodiscard]] glm::dvec3 scattered(const SurfaceHit& hit, const glm::dvec3& point, const Incidence& light);
+    [[nodiscard]] glm::dvec3 scattered(const SurfaceHit& hit, const glm::dvec3& point,
+                                       const Incidence& light);
 
     struct Step {
         glm::dvec3 origin{}, direction{};
         glm::dvec3 weight{};  // of the radiance that comes from there
     };
-    // A direction from which the surface takes light, uniform over the hemisphere, or the sphere where it transmits.
+    // A direction from which the surface takes light, uniform over the hemisphere, or the sphere where it
+    // transmits.
     [[nodiscard]] static Step onward(const SurfaceHit& hit, const glm::dvec3& point, double u, double v);
 };
 
@@ -49,7 +51,9 @@ struct Spread {
     double sum = 0, squares = 0;
     void add(double v) { sum += v, squares += v * v; }
     [[nodiscard]] double mean(double n) const { return sum / n; }
-    [[nodiscard]] double error(double n) const { return std::sqrt(std::max(0.0, squares / n - mean(n) * mean(n)) / (n - 1)); }
+    [[nodiscard]] double error(double n) const {
+        return std::sqrt(std::max(0.0, squares / n - mean(n) * mean(n)) / (n - 1));
+    }
 };
 
 }  // namespace drtv::reference

@@ -11,8 +11,8 @@
 
 namespace drtv::reference {
 
-// Ground, walls that meet in a corner, a one-sided wall, a roof, ten trees of masked leaves, mirrored instances:
-// all within sector (0, 0).
+// Ground, walls that meet in a corner, a one-sided wall, a roof, ten trees of masked leaves, mirrored
+// instances: all within sector (0, 0).
 [[nodiscard]] map::Map make_yard();
 
 struct YardProbe {

@@ -1,4 +1,5 @@
-// The gRPC face as a program of another language would meet it: contract, limits, statuses, health, reflection.
+// The gRPC face as a program of another language would meet it: contract, limits, statuses, health,
+// reflection.
 #include "bakerd/service/server.h"
 #include "tests/map/gltf_builder.h"
 
@@ -25,8 +26,13 @@ class ServiceTest : public testing::Test {
   protected:
     ServiceTest() {
         std::signal(SIGPIPE, SIG_IGN);
-        folder_ = fs::temp_directory_path() / ("drtv_service_" + std::to_string(::getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
-        farm_ = farm::Farm::open({.data_folder = folder_.string(), .worker_command = {DRTV_BINARY_DIR "/bakerd", "worker", "--blobs", (folder_ / "blobs").string(), "--threads", "1"}, .threads = 1}).value();
+        folder_ = fs::temp_directory_path() / ("drtv_service_" + std::to_string(::getpid()) + "_" +
+                                               testing::UnitTest::GetInstance()->current_test_info()->name());
+        farm_ = farm::Farm::open({.data_folder = folder_.string(),
+                                  .worker_command = {DRTV_BINARY_DIR "/bakerd", "worker", "--blobs",
+                                                     (folder_ / "blobs").string(), "--threads", "1"},
+                                  .threads = 1})
+                    .value();
         server_ = Server::start(*farm_, "127.0.0.1:0", {}).value();
         channel_ = grpc::CreateChannel(server_->address(), grpc::InsecureChannelCredentials());
         blobs_ = v1::Blobs::NewStub(channel_);
@@ -43,7 +49,8 @@ class ServiceTest : public testing::Test {
 
     static v1::Blob blob_of(const std::string& bytes) {
         v1::Blob blob;
-        blob.set_sha256(to_hex(map::digest_of({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()})));
+        blob.set_sha256(
+            to_hex(map::digest_of({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()})));
         blob.set_size_bytes(static_cast<std::int64_t>(bytes.size()));
         return blob;
     }
@@ -62,7 +69,8 @@ class ServiceTest : public testing::Test {
             }
             first = false;
             request.set_data(part);
-            if (!writer->Write(request)) break;
+            if (!writer->Write(request))
+                break;
         }
         writer->WritesDone();
         return writer->Finish();
@@ -98,7 +106,8 @@ class ServiceTest : public testing::Test {
         return map.name();
     }
 
-    grpc::Status create_job(const std::string& map, const std::string& request_id, v1::Job& job, const std::string& preset = "draft") {
+    grpc::Status create_job(const std::string& map, const std::string& request_id, v1::Job& job,
+                            const std::string& preset = "draft") {
         v1::CreateJobRequest request;
         request.mutable_job()->set_map(map);
         request.mutable_job()->mutable_settings()->set_preset(preset);
@@ -122,7 +131,8 @@ TEST_F(ServiceTest, UploadGoesOnWhereItBroke) {
     const std::string bytes(1500000, 'x'), first = bytes.substr(0, 600000), rest = bytes.substr(600000);
     const v1::Blob blob = blob_of(bytes);
     EXPECT_EQ(received(blob), 0);
-    EXPECT_EQ(upload(blob, 0, {first}).error_code(), StatusCode::INVALID_ARGUMENT);  // ends too early, and is kept
+    EXPECT_EQ(upload(blob, 0, {first}).error_code(),
+              StatusCode::INVALID_ARGUMENT);  // ends too early, and is kept
     EXPECT_EQ(received(blob), 600000);
     EXPECT_EQ(upload(blob, 5, {rest}).error_code(), StatusCode::ABORTED);
     EXPECT_TRUE(upload(blob, 600000, {rest}).ok());
@@ -138,7 +148,8 @@ TEST_F(ServiceTest, WrongUploadsAreRefusedAndLeaveNothing) {
     malformed.set_sha256("../../etc/passwd");
     EXPECT_EQ(upload(malformed, 0, {"right"}).error_code(), StatusCode::INVALID_ARGUMENT);
     const std::string large((std::size_t{1} << 20) + 1, 'x');
-    EXPECT_EQ(upload(blob_of(large), 0, {large}).error_code(), StatusCode::INVALID_ARGUMENT);  // over 1 MiB a message
+    EXPECT_EQ(upload(blob_of(large), 0, {large}).error_code(),
+              StatusCode::INVALID_ARGUMENT);  // over 1 MiB a message
 }
 
 TEST_F(ServiceTest, SameRequestIdGivesTheSameJob) {
@@ -151,7 +162,8 @@ TEST_F(ServiceTest, SameRequestIdGivesTheSameJob) {
     EXPECT_NE(first.name(), other.name());
     v1::Job refused;
     EXPECT_EQ(create_job(map, "three", refused, "ultra").error_code(), StatusCode::INVALID_ARGUMENT);
-    EXPECT_EQ(create_job("maps/" + std::string(64, '0'), "four", refused).error_code(), StatusCode::NOT_FOUND);
+    EXPECT_EQ(create_job("maps/" + std::string(64, '0'), "four", refused).error_code(),
+              StatusCode::NOT_FOUND);
     EXPECT_EQ(create_job("flat", "five", refused).error_code(), StatusCode::INVALID_ARGUMENT);
 }
 
@@ -162,7 +174,8 @@ TEST_F(ServiceTest, WatchEndsWithTheJobAndPullGivesItsFiles) {
     watch.set_name(job.name());
     grpc::ClientContext watch_context;
     const auto reader = jobs_->WatchJob(&watch_context, watch);
-    while (reader->Read(&job)) {}
+    while (reader->Read(&job)) {
+    }
     ASSERT_TRUE(reader->Finish().ok());
     EXPECT_EQ(job.state(), v1::Job::SUCCEEDED);
     EXPECT_EQ(job.sectors_done(), 4);
@@ -175,11 +188,13 @@ TEST_F(ServiceTest, WatchEndsWithTheJobAndPullGivesItsFiles) {
     std::map<std::string, std::string> bytes_of;  // by digest
     std::string digest;
     while (files->Read(&message)) {
-        if (message.has_sector()) digest = message.sector().sha256();
+        if (message.has_sector())
+            digest = message.sector().sha256();
         bytes_of[digest] += message.data();
     }
     ASSERT_TRUE(files->Finish().ok());
-    for (const auto& [sha256, bytes] : bytes_of) EXPECT_EQ(blob_of(bytes).sha256(), sha256);
+    for (const auto& [sha256, bytes] : bytes_of)
+        EXPECT_EQ(blob_of(bytes).sha256(), sha256);
     EXPECT_EQ(bytes_of.size(), 4u);
 }
 
@@ -197,8 +212,10 @@ TEST_F(ServiceTest, ListsComeInPages) {
         v1::ListJobsResponse page;
         ASSERT_TRUE(jobs_->ListJobs(&context, request, &page).ok());
         EXPECT_LE(page.jobs_size(), 2);
-        for (const v1::Job& job : page.jobs()) names.push_back(job.name());
-        if (page.next_page_token().empty()) break;
+        for (const v1::Job& job : page.jobs())
+            names.push_back(job.name());
+        if (page.next_page_token().empty())
+            break;
         request.set_page_token(page.next_page_token());
     }
     EXPECT_EQ(names, (std::vector<std::string>{"jobs/5", "jobs/4", "jobs/3", "jobs/2", "jobs/1"}));
@@ -227,7 +244,8 @@ TEST_F(ServiceTest, HealthIsServing) {
     std::vector<grpc::Slice> slices;
     ASSERT_TRUE(response.Dump(&slices).ok());
     std::string bytes;
-    for (const grpc::Slice& slice : slices) bytes.append(reinterpret_cast<const char*>(slice.begin()), slice.size());
+    for (const grpc::Slice& slice : slices)
+        bytes.append(reinterpret_cast<const char*>(slice.begin()), slice.size());
     EXPECT_EQ(bytes, std::string("\x08\x01"));  // status: SERVING
 }
 
@@ -235,7 +253,8 @@ TEST_F(ServiceTest, ReflectionNamesTheServices) {
     grpc::GenericStub stub(channel_);
     grpc::ClientContext context;
     grpc::CompletionQueue queue;
-    const auto call = stub.PrepareCall(&context, "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", &queue);
+    const auto call =
+        stub.PrepareCall(&context, "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", &queue);
     void* tag = nullptr;
     bool ok = false;
     const auto step = [&] { return queue.Next(&tag, &ok) && ok; };
@@ -250,8 +269,11 @@ TEST_F(ServiceTest, ReflectionNamesTheServices) {
     std::vector<grpc::Slice> slices;
     ASSERT_TRUE(response.Dump(&slices).ok());
     std::string bytes;
-    for (const grpc::Slice& slice : slices) bytes.append(reinterpret_cast<const char*>(slice.begin()), slice.size());
-    for (const char* name : {"drtv.v1.Blobs", "drtv.v1.Maps", "drtv.v1.Jobs", "drtv.v1.Sectors", "grpc.health.v1.Health"}) EXPECT_NE(bytes.find(name), std::string::npos) << name;
+    for (const grpc::Slice& slice : slices)
+        bytes.append(reinterpret_cast<const char*>(slice.begin()), slice.size());
+    for (const char* name :
+         {"drtv.v1.Blobs", "drtv.v1.Maps", "drtv.v1.Jobs", "drtv.v1.Sectors", "grpc.health.v1.Health"})
+        EXPECT_NE(bytes.find(name), std::string::npos) << name;
     grpc::Status status;
     call->Finish(&status, nullptr);
     static_cast<void>(queue.Next(&tag, &ok));
@@ -266,13 +288,22 @@ TEST_F(ServiceTest, StoppingAnswersWatchersAndLaterCalls) {
 
 TEST(Server, TakenPortAndHalfTlsAreToldInASentence) {
     const fs::path folder = fs::temp_directory_path() / ("drtv_port_" + std::to_string(::getpid()));
-    auto farm = farm::Farm::open({.data_folder = folder.string(), .worker_command = {"/bin/false"}, .threads = 1}).value();
+    auto farm =
+        farm::Farm::open({.data_folder = folder.string(), .worker_command = {"/bin/false"}, .threads = 1})
+            .value();
     const auto first = Server::start(*farm, "127.0.0.1:0", {}).value();
     const auto second = Server::start(*farm, first->address(), {});
     ASSERT_FALSE(second);
     EXPECT_NE(second.error().find(first->address()), std::string::npos);
-    EXPECT_NE(Server::start(*farm, "127.0.0.1:0", {.certificate = "cert.pem", .key = "", .client_ca = ""}).error().find("all three"), std::string::npos);
-    EXPECT_NE(Server::start(*farm, "127.0.0.1:0", {.certificate = "/nowhere/a", .key = "/nowhere/b", .client_ca = "/nowhere/c"}).error().find("/nowhere/a"), std::string::npos);
+    EXPECT_NE(Server::start(*farm, "127.0.0.1:0", {.certificate = "cert.pem", .key = "", .client_ca = ""})
+                  .error()
+                  .find("all three"),
+              std::string::npos);
+    EXPECT_NE(Server::start(*farm, "127.0.0.1:0",
+                            {.certificate = "/nowhere/a", .key = "/nowhere/b", .client_ca = "/nowhere/c"})
+                  .error()
+                  .find("/nowhere/a"),
+              std::string::npos);
     fs::remove_all(folder);
 }
 

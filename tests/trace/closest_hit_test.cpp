@@ -1,9 +1,9 @@
 // The closest hit against a loop over all triangles in double.
 #include "tests/trace/scenes.h"
 
+#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
@@ -33,17 +33,27 @@ SlowHit slow_closest(const map::Map& map, const Ray& ray) {
         const double side = glm::determinant(glm::dmat3(world_from_object)) < 0 ? -1 : 1;
         for (const map::Primitive& primitive : map.meshes[object.mesh].primitives) {
             for (const glm::uvec3& t : primitive.triangles) {
-                const glm::dvec3 a = world_from_object * glm::dvec4(primitive.positions[t.x], 1), b = world_from_object * glm::dvec4(primitive.positions[t.y], 1),
-                                 c = world_from_object * glm::dvec4(primitive.positions[t.z], 1), d(ray.direction), s = glm::dvec3(ray.origin) - a;
-                const glm::dvec3 p = glm::cross(d, c - a), q = glm::cross(s, b - a), normal = glm::cross(b - a, c - a) * side;
+                const glm::dvec3 a = world_from_object * glm::dvec4(primitive.positions[t.x], 1),
+                                 b = world_from_object * glm::dvec4(primitive.positions[t.y], 1),
+                                 c = world_from_object * glm::dvec4(primitive.positions[t.z], 1),
+                                 d(ray.direction), s = glm::dvec3(ray.origin) - a;
+                const glm::dvec3 p = glm::cross(d, c - a), q = glm::cross(s, b - a),
+                                 normal = glm::cross(b - a, c - a) * side;
                 const double det = glm::dot(b - a, p);
                 const bool grazes = std::abs(det) < 1e-2 * glm::length(normal);
-                if (det == 0) continue;
-                const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det, distance_m = glm::dot(c - a, q) / det;
+                if (det == 0)
+                    continue;
+                const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det,
+                             distance_m = glm::dot(c - a, q) / det;
                 const double inside = std::min({u, v, 1 - u - v});
-                if (distance_m < -distance_tolerance_m || distance_m > ray.far_m + distance_tolerance_m || inside < -edge_tolerance) continue;
-                if (inside < edge_tolerance || grazes || std::abs(distance_m) < distance_tolerance_m || std::abs(distance_m - ray.far_m) < distance_tolerance_m) unsure_m = std::min(unsure_m, distance_m);
-                else if (distance_m < best.distance_m) best = {distance_m, normal / glm::length(normal), true};
+                if (distance_m < -distance_tolerance_m || distance_m > ray.far_m + distance_tolerance_m ||
+                    inside < -edge_tolerance)
+                    continue;
+                if (inside < edge_tolerance || grazes || std::abs(distance_m) < distance_tolerance_m ||
+                    std::abs(distance_m - ray.far_m) < distance_tolerance_m)
+                    unsure_m = std::min(unsure_m, distance_m);
+                else if (distance_m < best.distance_m)
+                    best = {distance_m, normal / glm::length(normal), true};
             }
         }
     }
@@ -67,14 +77,18 @@ TEST(ClosestHit, AgreesWithASlowLoopOverTurnedScaledAndMirroredSoups) {
         const auto scene = scene_of(map);
         int compared = 0, hits = 0;
         for (int n = 0; n < 4000; ++n) {
-            const Ray ray{{between(random, -20, 20), between(random, -20, 20), between(random, -10, 10)}, random_direction(random), n % 3 == 0 ? 8.0f : 1000.0f};
+            const Ray ray{{between(random, -20, 20), between(random, -20, 20), between(random, -10, 10)},
+                          random_direction(random),
+                          n % 3 == 0 ? 8.0f : 1000.0f};
             const SlowHit slow = slow_closest(*map, ray);
-            if (!slow.sure) continue;
+            if (!slow.sure)
+                continue;
             ++compared;
             const auto hit = scene->closest(ray);
             ASSERT_EQ(hit.has_value(), std::isfinite(slow.distance_m)) << "ray " << n;
             EXPECT_EQ(scene->occluded(ray), hit.has_value()) << "ray " << n;
-            if (!hit) continue;
+            if (!hit)
+                continue;
             ++hits;
             EXPECT_NEAR(hit->distance_m, slow.distance_m, distance_tolerance_m);
             EXPECT_LE(hit->distance_m, ray.far_m);
@@ -85,8 +99,11 @@ TEST(ClosestHit, AgreesWithASlowLoopOverTurnedScaledAndMirroredSoups) {
             const map::Object& object = scene->object_of(*hit);
             const map::Primitive& primitive = map->meshes[object.mesh].primitives[hit->primitive];
             const glm::uvec3& t = primitive.triangles[hit->triangle];
-            const glm::vec3 local = primitive.positions[t.x] * (1 - hit->u - hit->v) + primitive.positions[t.y] * hit->u + primitive.positions[t.z] * hit->v;
-            EXPECT_LT(glm::distance(object.world_from_object * glm::vec4(local, 1), ray.origin + ray.direction * hit->distance_m), 3e-4f);
+            const glm::vec3 local = primitive.positions[t.x] * (1 - hit->u - hit->v) +
+                                    primitive.positions[t.y] * hit->u + primitive.positions[t.z] * hit->v;
+            EXPECT_LT(glm::distance(object.world_from_object * glm::vec4(local, 1),
+                                    ray.origin + ray.direction * hit->distance_m),
+                      3e-4f);
         }
         EXPECT_GT(compared, 3000);
         EXPECT_GT(hits, 500);
@@ -106,13 +123,17 @@ TEST(ClosestHit, DoesNotDependOnTheRegionAsLongAsTheObjectIsWithinReach) {
     ASSERT_GT(near->object_count(), 0u);
     int hits = 0;
     for (int n = 0; n < 20000; ++n) {
-        const Ray ray{{between(random, -5, 5), between(random, -5, 5), between(random, -9, 9)}, random_direction(random), 60};
+        const Ray ray{{between(random, -5, 5), between(random, -5, 5), between(random, -9, 9)},
+                      random_direction(random),
+                      60};
         const auto a = whole->closest(ray), b = near->closest(ray);
         ASSERT_EQ(a.has_value(), b.has_value());
         ASSERT_EQ(whole->occluded(ray), near->occluded(ray));
-        if (!a) continue;
+        if (!a)
+            continue;
         ++hits;
-        EXPECT_EQ(std::tie(a->distance_m, a->u, a->v, a->primitive, a->triangle, a->front, a->normal), std::tie(b->distance_m, b->u, b->v, b->primitive, b->triangle, b->front, b->normal));
+        EXPECT_EQ(std::tie(a->distance_m, a->u, a->v, a->primitive, a->triangle, a->front, a->normal),
+                  std::tie(b->distance_m, b->u, b->v, b->primitive, b->triangle, b->front, b->normal));
         EXPECT_EQ(&whole->object_of(*a), &near->object_of(*b));
     }
     EXPECT_GT(hits, 100);
@@ -121,20 +142,24 @@ TEST(ClosestHit, DoesNotDependOnTheRegionAsLongAsTheObjectIsWithinReach) {
 TEST(ClosestHit, StaticBackAbsorbsAndLeavesReflectOnBothSides) {
     for (const bool mirrored : {false, true}) {
         const glm::dmat4 place = glm::scale(glm::dmat4(1), glm::dvec3(mirrored ? -1 : 1, 1, 1));
-        for (const auto& [role, double_sided, absorbs] : {std::tuple{"static", false, true}, {"static", true, false}, {"vegetation", false, false}}) {
+        for (const auto& [role, double_sided, absorbs] :
+             {std::tuple{"static", false, true}, {"static", true, false}, {"vegetation", false, false}}) {
             Thing square = thing_of(level_square(1), {0.5, 0.25, 0.125}, role);
             square.world_from_shape = place;
             square.material.double_sided = double_sided;
             const auto scene = scene_of(std::vector<Thing>{square});
-            const auto above = scene->closest({{0.1f, 0.2f, 5}, {0, 0, -1}, 10}), below = scene->closest({{0.1f, 0.2f, -5}, {0, 0, 1}, 10});
+            const auto above = scene->closest({{0.1f, 0.2f, 5}, {0, 0, -1}, 10}),
+                       below = scene->closest({{0.1f, 0.2f, -5}, {0, 0, 1}, 10});
             ASSERT_TRUE(above && below);
-            EXPECT_TRUE(above->front && !below->front) << "glTF turns the winding of a mirrored node, so that its front stays up";
+            EXPECT_TRUE(above->front && !below->front)
+                << "glTF turns the winding of a mirrored node, so that its front stays up";
             EXPECT_EQ(above->normal, glm::vec3(0, 0, 1));
             EXPECT_EQ(below->normal, glm::vec3(0, 0, -1));
             EXPECT_FALSE(scene->surface(*above, 0).absorbs);
             EXPECT_EQ(scene->surface(*above, 0).albedo, glm::vec3(0.5, 0.25, 0.125));
             EXPECT_EQ(scene->surface(*below, 0).absorbs, absorbs) << role;
-            EXPECT_EQ(scene->surface(*below, 0).albedo, absorbs ? glm::vec3(0) : glm::vec3(0.5, 0.25, 0.125)) << role;
+            EXPECT_EQ(scene->surface(*below, 0).albedo, absorbs ? glm::vec3(0) : glm::vec3(0.5, 0.25, 0.125))
+                << role;
         }
     }
 }
@@ -149,7 +174,8 @@ TEST(ClosestHit, FarIsInclusiveAndNothingBeyondCounts) {
 }
 
 TEST(ClosestHit, EmptySceneIsSky) {
-    const auto scene = scene_of(map_of(std::vector<Thing>{thing_of(level_square(10))}), {glm::vec2(500), glm::vec2(600)}, 10);
+    const auto scene = scene_of(map_of(std::vector<Thing>{thing_of(level_square(10))}),
+                                {glm::vec2(500), glm::vec2(600)}, 10);
     EXPECT_EQ(scene->object_count(), 0u);
     EXPECT_FALSE(scene->closest({{0, 0, 4}, {0, 0, -1}, 1000}));
     EXPECT_FALSE(scene->occluded({{0, 0, 4}, {0, 0, -1}, 1000}));

@@ -1,9 +1,9 @@
 // The distance to the nearest surface against points strewn over all triangles.
 #include "tests/trace/scenes.h"
 
+#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <gtest/gtest.h>
 
 #include <limits>
 
@@ -22,12 +22,16 @@ Bracket strewn(const map::Map& map, const glm::dvec3& point) {
     for (const map::Object& object : map.objects) {
         for (const map::Primitive& primitive : map.meshes[object.mesh].primitives) {
             for (const glm::uvec3& t : primitive.triangles) {
-                const auto corner = [&](std::uint32_t n) { return glm::dmat4x3(object.world_from_object) * glm::dvec4(primitive.positions[n], 1); };
+                const auto corner = [&](std::uint32_t n) {
+                    return glm::dmat4x3(object.world_from_object) * glm::dvec4(primitive.positions[n], 1);
+                };
                 const glm::dvec3 a = corner(t.x), b = corner(t.y), c = corner(t.z);
-                const double between_points = std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)}) / grid;
+                const double between_points =
+                    std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)}) / grid;
                 for (int u = 0; u <= grid; ++u) {
                     for (int v = 0; u + v <= grid; ++v) {
-                        const double distance = glm::length(a + (b - a) * (double(u) / grid) + (c - a) * (double(v) / grid) - point);
+                        const double distance = glm::length(a + (b - a) * (double(u) / grid) +
+                                                            (c - a) * (double(v) / grid) - point);
                         nearest.most = std::min(nearest.most, distance);
                         nearest.least = std::min(nearest.least, distance - between_points);
                     }
@@ -44,8 +48,11 @@ TEST(NearestSurface, AgreesWithPointsStrewnOverTurnedScaledMirroredAndLargeThing
     for (int n = 0; n < 6; ++n) {
         const Shape soup = triangle_soup(random, 12, 2);
         for (const bool mirrored : {false, true}) {
-            const glm::dmat4 place = glm::translate(glm::dmat4(1), glm::dvec3(between(random, -8, 8), between(random, -8, 8), between(random, -3, 3)));
-            const glm::dmat4 turned = glm::rotate(place, double{between(random, 0, 6)}, glm::dvec3(random_direction(random)));
+            const glm::dmat4 place = glm::translate(
+                glm::dmat4(1),
+                glm::dvec3(between(random, -8, 8), between(random, -8, 8), between(random, -3, 3)));
+            const glm::dmat4 turned =
+                glm::rotate(place, double{between(random, 0, 6)}, glm::dvec3(random_direction(random)));
             things.push_back({soup, glm::scale(turned, glm::dvec3(mirrored ? -1.3 : 1, 0.5, 2))});
         }
     }

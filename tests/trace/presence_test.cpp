@@ -3,9 +3,9 @@
 #include "bakerd/trace/surface.h"
 #include "tests/trace/scenes.h"
 
+#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
@@ -44,7 +44,9 @@ struct Skin {
         primitive.triangles = {{0, 1, 2}};
     }
     map::Material& material() { return map.materials[0]; }
-    [[nodiscard]] bool there(std::uint32_t triangle, float u, float v) const { return trace::is_there(map, primitive, triangle, u, v); }
+    [[nodiscard]] bool there(std::uint32_t triangle, float u, float v) const {
+        return trace::is_there(map, primitive, triangle, u, v);
+    }
 };
 
 Skin random_skin(std::mt19937& random, AlphaMode mode) {
@@ -55,18 +57,25 @@ Skin random_skin(std::mt19937& random, AlphaMode mode) {
     material.base_colour.w = std::array{1.0f, 1.0f, 0.6f, 0.0f}[random() % 4];
     const bool textured = random() % 4 != 0, coloured = random() % 3 == 0;
     if (textured) {
-        skin.map.textures.push_back(clear_to_opaque(random, mode == AlphaMode::blend ? map::Coverage::alpha : map::Coverage::cutoff, material.alpha_cutoff));
-        skin.map.textures[0].wrap_u = std::array{map::Wrap::repeat, map::Wrap::clamp, map::Wrap::mirror}[random() % 3];
+        skin.map.textures.push_back(
+            clear_to_opaque(random, mode == AlphaMode::blend ? map::Coverage::alpha : map::Coverage::cutoff,
+                            material.alpha_cutoff));
+        skin.map.textures[0].wrap_u =
+            std::array{map::Wrap::repeat, map::Wrap::clamp, map::Wrap::mirror}[random() % 3];
         material.base_texture.texture = 0;
-        if (random() % 2 == 0) material.base_texture.u_from_uv = {0.5f, -0.25f, between(random, -2, 2)};
+        if (random() % 2 == 0)
+            material.base_texture.u_from_uv = {0.5f, -0.25f, between(random, -2, 2)};
     }
     skin.primitive.triangles.clear();
     for (std::uint32_t t = 0; t < 60; ++t) {
         const glm::vec2 at(between(random, -2, 2), between(random, -2, 2));
         const float size = t % 2 == 0 ? 0.1f : 0.8f;
         for (int k = 0; k < 3; ++k) {
-            if (textured) skin.primitive.uvs.push_back(at + glm::vec2(between(random, 0, size), between(random, 0, size)));
-            if (coloured) skin.primitive.colours.emplace_back(1, 1, 1, t % 3 == 0 ? 1.0f : between(random, 0, 1));
+            if (textured)
+                skin.primitive.uvs.push_back(at +
+                                             glm::vec2(between(random, 0, size), between(random, 0, size)));
+            if (coloured)
+                skin.primitive.colours.emplace_back(1, 1, 1, t % 3 == 0 ? 1.0f : between(random, 0, 1));
         }
         skin.primitive.triangles.emplace_back(3 * t, 3 * t + 1, 3 * t + 2);
     }
@@ -82,17 +91,21 @@ TEST(Presence, AgreesWithEveryPointOfTheTriangle) {
             for (std::uint32_t t = 0; t < skin.primitive.triangles.size(); ++t) {
                 const Presence presence = trace::presence_of(skin.map, skin.primitive, t);
                 ++count[static_cast<std::size_t>(presence)];
-                if (presence == Presence::mixed) continue;
+                if (presence == Presence::mixed)
+                    continue;
                 constexpr int steps = 16;
                 for (int i = 0; i <= steps; ++i) {
                     for (int j = 0; i + j <= steps; ++j) {
                         const float u = static_cast<float>(i) / steps, v = static_cast<float>(j) / steps;
-                        ASSERT_EQ(skin.there(t, u, v), presence == Presence::whole) << "mode " << static_cast<int>(mode) << ", skin " << n << ", triangle " << t << ", " << u << ", " << v;
+                        ASSERT_EQ(skin.there(t, u, v), presence == Presence::whole)
+                            << "mode " << static_cast<int>(mode) << ", skin " << n << ", triangle " << t
+                            << ", " << u << ", " << v;
                     }
                 }
             }
         }
-        for (const int each : count) EXPECT_GT(each, 100) << "mode " << static_cast<int>(mode);
+        for (const int each : count)
+            EXPECT_GT(each, 100) << "mode " << static_cast<int>(mode);
     }
 }
 
@@ -122,7 +135,9 @@ TEST(Presence, IsCertainWhereTheFactorAloneDecides) {
 // A cutoff over a factor of zero is no division by it: such a material is allowed, and shows nothing.
 TEST(Presence, OfAMaskedPictureUnderAFactorOfZeroIsNowhere) {
     GltfBuilder b;
-    b.place(ground(1), "", b.add_material({.colour = {1, 1, 1, 0}, .mask_cutoff = 0.5, .texture = b.add_texture(half_masked())}));
+    b.place(ground(1), "",
+            b.add_material(
+                {.colour = {1, 1, 1, 0}, .mask_cutoff = 0.5, .texture = b.add_texture(half_masked())}));
     const auto imported = b.import();
     ASSERT_TRUE(imported) << imported.error();
     const map::Primitive& primitive = imported->meshes.at(0).primitives.at(0);
@@ -163,7 +178,8 @@ TEST(BlendedCoin, ShowsTheSurfaceAsOftenAsItsAlphaSays) {
         // Four standard deviations of a fair coin at the most.
         const double deviation = 4 * 0.5 / std::sqrt(double{tosses});
         EXPECT_NEAR(double{1} * there / tosses, alpha, deviation);
-        EXPECT_NEAR(double{1} * there_on_both / tosses, alpha * alpha, deviation) << "triangles share their coins";
+        EXPECT_NEAR(double{1} * there_on_both / tosses, alpha * alpha, deviation)
+            << "triangles share their coins";
     }
 }
 
@@ -186,13 +202,15 @@ Thing partly_clear_soup(std::mt19937& random) {
     Thing soup = thing_of(triangle_soup(random, 240, 3));
     for (std::size_t n = 0; n < soup.shape.positions.size() / 3; ++n) {
         const float left = n % 3 == 0 ? 0.08f : n % 3 == 1 ? 0.72f : 0.2f, width = n % 3 == 2 ? 0.6f : 0.2f;
-        for (int k = 0; k < 3; ++k) soup.shape.uvs.emplace_back(left + between(random, 0, width), between(random, 0, 1));
+        for (int k = 0; k < 3; ++k)
+            soup.shape.uvs.emplace_back(left + between(random, 0, width), between(random, 0, 1));
     }
     soup.material.texture = 0;
     return soup;
 }
 
-// The first of the unmasked hits along the ray that alpha leaves; not sure where one is met at alpha's very edge.
+// The first of the unmasked hits along the ray that alpha leaves; not sure where one is met at alpha's very
+// edge.
 struct Expected {
     std::optional<trace::Hit> hit;
     float distance_m = 0;
@@ -206,9 +224,11 @@ Expected first_there(const trace::Scene& opaque, const map::Map& masked, trace::
     float gone_m = 0;
     for (;;) {
         const auto hit = opaque.closest(ray);
-        if (!hit) return expected;
+        if (!hit)
+            return expected;
         const float alpha = trace::alpha_at(masked, primitive, hit->triangle, hit->u, hit->v);
-        if (std::abs(alpha - masked.materials[primitive.material].alpha_cutoff) < alpha_edge) expected.sure = false;
+        if (std::abs(alpha - masked.materials[primitive.material].alpha_cutoff) < alpha_edge)
+            expected.sure = false;
         if (trace::is_there(masked, primitive, hit->triangle, hit->u, hit->v)) {
             expected.hit = hit;
             expected.distance_m = gone_m + hit->distance_m;
@@ -227,7 +247,8 @@ TEST(MaskedMesh, ItsTrianglesAreMetWhereTheyAreWhicheverSetTheyAreIn) {
         SCOPED_TRACE(testing::Message() << "scale " << scale << (mirrored ? ", mirrored" : ""));
         std::mt19937 random(5);
         Thing soup = partly_clear_soup(random);
-        soup.world_from_shape = glm::scale(glm::rotate(glm::dmat4(1), 0.3, glm::dvec3(1, 2, 3)), glm::dvec3(scale, scale, mirrored ? -scale : scale));
+        soup.world_from_shape = glm::scale(glm::rotate(glm::dmat4(1), 0.3, glm::dvec3(1, 2, 3)),
+                                           glm::dvec3(scale, scale, mirrored ? -scale : scale));
         const auto opaque_map = map_of(std::vector<Thing>{soup});
         soup.material.mask_cutoff = 0.5;
         auto masked_map = std::make_shared<map::Map>(*map_of(std::vector<Thing>{soup}));
@@ -235,21 +256,26 @@ TEST(MaskedMesh, ItsTrianglesAreMetWhereTheyAreWhicheverSetTheyAreIn) {
         masked_map->textures.at(0) = picture;
         const map::Primitive& primitive = masked_map->meshes.at(0).primitives.at(0);
         std::array<int, 3> count{};
-        for (std::uint32_t t = 0; t < primitive.triangles.size(); ++t) ++count[static_cast<std::size_t>(trace::presence_of(*masked_map, primitive, t))];
-        for (const int each : count) ASSERT_GT(each, 50);
+        for (std::uint32_t t = 0; t < primitive.triangles.size(); ++t)
+            ++count[static_cast<std::size_t>(trace::presence_of(*masked_map, primitive, t))];
+        for (const int each : count)
+            ASSERT_GT(each, 50);
 
         const auto opaque = scene_of(opaque_map), masked = scene_of(masked_map);
         int hits = 0, passed = 0;
         const auto reach = static_cast<float>(40 * scale);
         for (int n = 0; n < 8000; ++n) {
-            const glm::vec3 origin(between(random, -12, 12), between(random, -12, 12), between(random, -12, 12));
+            const glm::vec3 origin(between(random, -12, 12), between(random, -12, 12),
+                                   between(random, -12, 12));
             const trace::Ray ray{origin * static_cast<float>(scale), random_direction(random), reach};
             const Expected expected = first_there(*opaque, *masked_map, ray);
-            if (!expected.sure) continue;
+            if (!expected.sure)
+                continue;
             const auto hit = masked->closest(ray);
             ASSERT_EQ(hit.has_value(), expected.hit.has_value()) << "ray " << n;
             EXPECT_EQ(masked->occluded(ray), hit.has_value()) << "ray " << n;
-            if (!hit) continue;
+            if (!hit)
+                continue;
             ++hits;
             passed += opaque->closest(ray)->triangle != hit->triangle ? 1 : 0;
             EXPECT_EQ(hit->triangle, expected.hit->triangle) << "ray " << n;

@@ -32,10 +32,15 @@ struct Thing {
 inline constexpr trace::Region everywhere{glm::vec2(-8192), glm::vec2(8192)};
 
 // A scene that holds on to what it needs.
-[[nodiscard]] std::shared_ptr<const trace::Scene> scene_of(std::shared_ptr<const map::Map> map, const trace::Region& region = everywhere, float reach_m = 0);
-[[nodiscard]] inline std::shared_ptr<const trace::Scene> scene_of(std::span<const Thing> things) { return scene_of(map_of(things)); }
+[[nodiscard]] std::shared_ptr<const trace::Scene> scene_of(std::shared_ptr<const map::Map> map,
+                                                           const trace::Region& region = everywhere,
+                                                           float reach_m = 0);
+[[nodiscard]] inline std::shared_ptr<const trace::Scene> scene_of(std::span<const Thing> things) {
+    return scene_of(map_of(things));
+}
 
-[[nodiscard]] Thing thing_of(const Shape& shape, const glm::vec3& colour = glm::vec3(1), const std::string& role = "static");
+[[nodiscard]] Thing thing_of(const Shape& shape, const glm::vec3& colour = glm::vec3(1),
+                             const std::string& role = "static");
 [[nodiscard]] glm::vec3 random_direction(std::mt19937& random);
 [[nodiscard]] float between(std::mt19937& random, float low, float high);
 [[nodiscard]] Shape triangle_soup(std::mt19937& random, int count, float size_m);

@@ -25,22 +25,29 @@ struct Skin {
         primitive.triangles = {{0, 1, 2}};
     }
     map::Material& material() { return map.materials[0]; }
-    [[nodiscard]] Surface at(bool front, Role role = Role::fixed, float u = 0.25f, float v = 0.25f) const { return trace::surface_at(map, primitive, role, 0, u, v, front, 1, 0); }
+    [[nodiscard]] Surface at(bool front, Role role = Role::fixed, float u = 0.25f, float v = 0.25f) const {
+        return trace::surface_at(map, primitive, role, 0, u, v, front, 1, 0);
+    }
 };
 
 TEST(Surface, SumOfBackAndThroughIsAtMostTheLargestAlbedo) {
     std::mt19937 random(1);
-    const auto colour = [&] { return glm::vec3(between(random, 0, 1), between(random, 0, 1), between(random, 0, 1)); };
+    const auto colour = [&] {
+        return glm::vec3(between(random, 0, 1), between(random, 0, 1), between(random, 0, 1));
+    };
     int limited = 0;
     for (int n = 0; n < 4000; ++n) {
         Skin skin(n % 5 == 0 ? glm::vec3(1) : colour());
         map::Material& material = skin.material();
         material.double_sided = random() % 2 == 0;
         material.alpha_mode = static_cast<AlphaMode>(random() % 3);
-        if (n % 2 == 0) material.transmission = n % 4 == 0 ? 1 : between(random, 0, 1);
+        if (n % 2 == 0)
+            material.transmission = n % 4 == 0 ? 1 : between(random, 0, 1);
         material.transmission_colour = n % 3 == 0 ? glm::vec3(1) : colour();
-        if (n % 7 == 0) skin.primitive.colours.assign(3, glm::vec4(colour(), 1));
-        const Surface surface = skin.at(random() % 2 == 0, random() % 2 == 0 ? Role::fixed : Role::vegetation);
+        if (n % 7 == 0)
+            skin.primitive.colours.assign(3, glm::vec4(colour(), 1));
+        const Surface surface =
+            skin.at(random() % 2 == 0, random() % 2 == 0 ? Role::fixed : Role::vegetation);
         for (glm::length_t k = 0; k < 3; ++k) {
             const float total = surface.albedo[k] + surface.transmitted[k];
             EXPECT_GE(surface.albedo[k], 0);
@@ -87,9 +94,16 @@ TEST(Leaves, LetThroughHalfOfWhatTheySendBackWhereThin) {
         AlphaMode mode;
         bool lets_through;
     };
-    for (const Case& c : {Case{Role::vegetation, true, AlphaMode::opaque, true}, {Role::vegetation, false, AlphaMode::mask, true}, {Role::vegetation, false, AlphaMode::blend, true},
-                          {Role::vegetation, false, AlphaMode::opaque, false}, {Role::fixed, true, AlphaMode::opaque, false}, {Role::fixed, true, AlphaMode::mask, false}, {Role::fixed, true, AlphaMode::blend, false}}) {
-        SCOPED_TRACE(testing::Message() << (c.role == Role::fixed ? "static" : "vegetation") << (c.double_sided ? ", double-sided" : "") << ", mode " << static_cast<int>(c.mode));
+    for (const Case& c : {Case{Role::vegetation, true, AlphaMode::opaque, true},
+                          {Role::vegetation, false, AlphaMode::mask, true},
+                          {Role::vegetation, false, AlphaMode::blend, true},
+                          {Role::vegetation, false, AlphaMode::opaque, false},
+                          {Role::fixed, true, AlphaMode::opaque, false},
+                          {Role::fixed, true, AlphaMode::mask, false},
+                          {Role::fixed, true, AlphaMode::blend, false}}) {
+        SCOPED_TRACE(testing::Message()
+                     << (c.role == Role::fixed ? "static" : "vegetation")
+                     << (c.double_sided ? ", double-sided" : "") << ", mode " << static_cast<int>(c.mode));
         Skin skin({0.5f, 0.25f, 0});
         skin.material().double_sided = c.double_sided;
         skin.material().alpha_mode = c.mode;
@@ -97,7 +111,8 @@ TEST(Leaves, LetThroughHalfOfWhatTheySendBackWhereThin) {
             const Surface surface = skin.at(front, c.role);
             EXPECT_FALSE(surface.absorbs);
             expect_near(surface.albedo, {0.5f, 0.25f, 0}, rounding);
-            expect_near(surface.transmitted, c.lets_through ? glm::vec3(0.25f, 0.125f, 0) : glm::vec3(0), rounding);
+            expect_near(surface.transmitted, c.lets_through ? glm::vec3(0.25f, 0.125f, 0) : glm::vec3(0),
+                        rounding);
         }
     }
 }
@@ -113,23 +128,30 @@ TEST(Leaves, BrightOnesStayWithinTheLimit) {
 // Whatever a surface is made of, what a path takes on from it is within the map's bound.
 TEST(MostScattered, NoSurfaceScattersMore) {
     std::mt19937 random(2);
-    const auto colour = [&](float most) { return glm::vec3(between(random, 0, most), between(random, 0, most), between(random, 0, most)); };
+    const auto colour = [&](float most) {
+        return glm::vec3(between(random, 0, most), between(random, 0, most), between(random, 0, most));
+    };
     int close = 0;
     for (int n = 0; n < 1500; ++n) {
         Skin skin(colour(1));
         map::Material& material = skin.material();
         material.double_sided = random() % 2 == 0;
         material.alpha_mode = static_cast<AlphaMode>(random() % 3);
-        if (n % 3 == 0) material.transmission = n % 6 == 0 ? 1 : between(random, 0, 1);
+        if (n % 3 == 0)
+            material.transmission = n % 6 == 0 ? 1 : between(random, 0, 1);
         material.transmission_colour = colour(1);
-        if (n % 4 == 0) skin.primitive.colours = {glm::vec4(colour(1.5f), 1), glm::vec4(colour(1), 1), glm::vec4(colour(0.5f), 1)};
+        if (n % 4 == 0)
+            skin.primitive.colours = {glm::vec4(colour(1.5f), 1), glm::vec4(colour(1), 1),
+                                      glm::vec4(colour(0.5f), 1)};
         if (n % 5 < 3) {
             map::Texture picture;
             picture.width = picture.height = 5;
             picture.coverage = static_cast<map::Coverage>(n % 5);
             picture.cutoff = 0.5f;
             const auto brightest = static_cast<unsigned>(50 + random() % 200);
-            for (unsigned k = 0; k < 25 * 4; ++k) picture.rgba.push_back(static_cast<std::uint8_t>(k % 4 == 3 ? random() % 2 * 3 : random() % brightest));
+            for (unsigned k = 0; k < 25 * 4; ++k)
+                picture.rgba.push_back(
+                    static_cast<std::uint8_t>(k % 4 == 3 ? random() % 2 * 3 : random() % brightest));
             map::prefilter(picture);
             skin.map.textures.push_back(picture);
             material.base_texture.texture = 0;
@@ -144,9 +166,13 @@ TEST(MostScattered, NoSurfaceScattersMore) {
         EXPECT_LT(most, 1);
         float seen = 0;
         for (int k = 0; k < 40; ++k) {
-            const float u = k < 3 ? static_cast<float>(k == 1) : between(random, 0, 0.5f), v = k < 3 ? static_cast<float>(k == 2) : between(random, 0, 0.5f);
-            const Surface surface = trace::surface_at(skin.map, skin.primitive, object.role, 0, u, v, true, 100, k % 2 == 0 ? 0 : between(random, 0, 30));
-            seen = std::max(seen, std::max({surface.albedo.x, surface.albedo.y, surface.albedo.z}) + std::max({surface.transmitted.x, surface.transmitted.y, surface.transmitted.z}));
+            const float u = k < 3 ? static_cast<float>(k == 1) : between(random, 0, 0.5f),
+                        v = k < 3 ? static_cast<float>(k == 2) : between(random, 0, 0.5f);
+            const Surface surface = trace::surface_at(skin.map, skin.primitive, object.role, 0, u, v, true,
+                                                      100, k % 2 == 0 ? 0 : between(random, 0, 30));
+            seen = std::max(
+                seen, std::max({surface.albedo.x, surface.albedo.y, surface.albedo.z}) +
+                          std::max({surface.transmitted.x, surface.transmitted.y, surface.transmitted.z}));
         }
         EXPECT_LE(seen, most + rounding) << n;
         close += seen > most * 0.99f ? 1 : 0;
@@ -198,7 +224,8 @@ TEST(SurfaceEmission, IsFactorTimesPictureAtItsOwnCoordinates) {
     expect_near(skin.at(true, Role::fixed, 0, 0).emission, {3, 2, 1}, rounding);
     expect_near(skin.at(true, Role::fixed, 1, 0).emission, {0, 0, 0}, rounding);
     expect_near(skin.at(true, Role::fixed, 0.5f, 0.25f).emission, {1.5f, 1, 0.5f}, rounding);
-    expect_near(trace::emission_at(skin.map, skin.primitive, 0, 0.5f, 0.25f, 1, 0), {1.5f, 1, 0.5f}, rounding);
+    expect_near(trace::emission_at(skin.map, skin.primitive, 0, 0.5f, 0.25f, 1, 0), {1.5f, 1, 0.5f},
+                rounding);
     skin.material().emission_texture.u_from_uv = {1, 0, -1};
     expect_near(skin.at(true, Role::fixed, 1, 0).emission, {3, 2, 1}, rounding);
 }
@@ -208,7 +235,8 @@ TEST(SurfaceFootprint, AveragesThePictureButNeverMoreThanAPartOfTheTriangle) {
     constexpr std::uint32_t size = 256;
     map::Texture picture;
     picture.width = picture.height = size;
-    for (std::uint32_t n = 0; n < size * size; ++n) picture.rgba.insert(picture.rgba.end(), 4, n % size / 2 % 2 == 0 ? 0 : 255);
+    for (std::uint32_t n = 0; n < size * size; ++n)
+        picture.rgba.insert(picture.rgba.end(), 4, n % size / 2 % 2 == 0 ? 0 : 255);
     map::prefilter(picture);
     Skin skin(glm::vec3(0.5f));
     skin.map.textures.push_back(picture);
@@ -216,14 +244,17 @@ TEST(SurfaceFootprint, AveragesThePictureButNeverMoreThanAPartOfTheTriangle) {
     skin.primitive.uvs = {{0, 0}, {1, 0}, {0, 1}};
     const auto albedo = [&](float footprint_m, float v) {
         // Right between two texels of one stripe, a white one.
-        return trace::surface_at(skin.map, skin.primitive, Role::fixed, 0, 67 / 256.0f, v, true, 100, footprint_m).albedo.x;
+        return trace::surface_at(skin.map, skin.primitive, Role::fixed, 0, 67 / 256.0f, v, true, 100,
+                                 footprint_m)
+            .albedo.x;
     };
     EXPECT_NEAR(albedo(0, 0.3f), 0.5f, rounding);
     // A texel is 10 m / 256 wide: at ten times that the stripes are gone.
     EXPECT_NEAR(albedo(10 * 10 / 256.0f, 0.3f), 0.25f, 1e-4f);
     // However wide the footprint, black below and white above stay apart on the same picture.
     map::Texture halves = picture;
-    for (std::uint32_t n = 0; n < size * size; ++n) std::fill_n(&halves.rgba[n * std::size_t{4}], 3, n / size < size / 2 ? 0 : 255);
+    for (std::uint32_t n = 0; n < size * size; ++n)
+        std::fill_n(&halves.rgba[n * std::size_t{4}], 3, n / size < size / 2 ? 0 : 255);
     map::prefilter(halves);
     skin.map.textures[0] = halves;
     EXPECT_NEAR(albedo(1e6f, 0.25f), 0, 1e-4f);

@@ -1,9 +1,9 @@
 // Equal distances are decided by a rule: not by the order of the map, what else is there, or the thread.
 #include "tests/trace/scenes.h"
 
+#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,8 @@ namespace {
 using trace::Ray;
 
 // All that an answer says, bit by bit.
-using Answer = std::tuple<bool, std::uint32_t, std::uint32_t, std::uint32_t, bool, std::uint32_t, std::uint32_t, std::uint32_t, map::Digest>;
+using Answer = std::tuple<bool, std::uint32_t, std::uint32_t, std::uint32_t, bool, std::uint32_t,
+                          std::uint32_t, std::uint32_t, map::Digest>;
 
 std::vector<Answer> answers(const trace::Scene& scene, const std::vector<Ray>& rays) {
     const trace::FloatMode mode;
@@ -24,8 +25,12 @@ std::vector<Answer> answers(const trace::Scene& scene, const std::vector<Ray>& r
     const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
     for (const Ray& ray : rays) {
         const auto hit = scene.closest(ray);
-        if (hit) result.emplace_back(true, bits(hit->distance_m), bits(hit->u), bits(hit->v), hit->front, bits(hit->normal.x), bits(hit->normal.y), bits(scene.surface(*hit, 0).albedo.x), scene.object_of(*hit).digest);
-        else result.emplace_back();
+        if (hit)
+            result.emplace_back(true, bits(hit->distance_m), bits(hit->u), bits(hit->v), hit->front,
+                                bits(hit->normal.x), bits(hit->normal.y),
+                                bits(scene.surface(*hit, 0).albedo.x), scene.object_of(*hit).digest);
+        else
+            result.emplace_back();
     }
     return result;
 }
@@ -57,7 +62,8 @@ std::vector<Ray> many_rays() {
         const glm::vec3 origin(between(random, -15, 15), between(random, -15, 15), between(random, -5, 12));
         rays.push_back({origin, random_direction(random), 500});
         // At the lattice of the squares' edges and diagonals.
-        const glm::vec3 target(static_cast<float>(random() % 5u) * 5 - 10, static_cast<float>(random() % 5u) * 5 - 10, -6);
+        const glm::vec3 target(static_cast<float>(random() % 5u) * 5 - 10,
+                               static_cast<float>(random() % 5u) * 5 - 10, -6);
         rays.push_back({origin, glm::normalize(target - origin), 500});
         rays.push_back({{target.x, target.y, origin.z}, {0, 0, -1}, 500});
     }
@@ -68,7 +74,8 @@ TEST(Ties, OrderOfTheMapDoesNotMatter) {
     std::vector<Thing> things = tied_things();
     const std::vector<Ray> rays = many_rays();
     const std::vector<Answer> before = answers(*scene_of(things), rays);
-    EXPECT_GT(std::count_if(before.begin(), before.end(), [](const Answer& a) { return std::get<0>(a); }), 20000);
+    EXPECT_GT(std::count_if(before.begin(), before.end(), [](const Answer& a) { return std::get<0>(a); }),
+              20000);
     std::mt19937 random(6);
     for (int n = 0; n < 4; ++n) {
         std::shuffle(things.begin(), things.end(), random);
@@ -85,27 +92,32 @@ TEST(Ties, FarObjectsDoNotMatter) {
         std::vector<Thing> more = things;
         for (int n = 0; n < far; ++n) {
             more.push_back(thing_of(triangle_soup(random, 9, 2), glm::vec3(0.01f * static_cast<float>(n))));
-            more.back().world_from_shape = glm::translate(glm::dmat4(1), glm::dvec3(2000 + 40 * n, 1500 - 90 * n, 100));
+            more.back().world_from_shape =
+                glm::translate(glm::dmat4(1), glm::dvec3(2000 + 40 * n, 1500 - 90 * n, 100));
         }
         EXPECT_TRUE(answers(*scene_of(more), rays) == before) << far << " far objects";
     }
 }
 
-// Copies share a mesh: what is far away and stretched must not change how a hit on the copy at hand is judged.
+// Copies share a mesh: what is far away and stretched must not change how a hit on the copy at hand is
+// judged.
 TEST(Ties, StretchedCopiesFarAwayDoNotMatter) {
     std::vector<Thing> things = tied_things();
     std::mt19937 random(12);
     std::vector<Ray> rays = many_rays();
     for (int n = 0; n < 20000; ++n) {
         // Grazing the squares.
-        const glm::vec3 target(between(random, -19, 19), between(random, -19, 19), -6), from(between(random, -60, 60), between(random, -60, 60), between(random, -5.99f, -5));
+        const glm::vec3 target(between(random, -19, 19), between(random, -19, 19), -6),
+            from(between(random, -60, 60), between(random, -60, 60), between(random, -5.99f, -5));
         rays.push_back({from, glm::normalize(target - from), 500});
     }
     const std::vector<Answer> before = answers(*scene_of(things), rays);
     const std::size_t count = things.size();
     for (std::size_t n = 0; n < count; ++n) {
         things.push_back(things[n]);
-        things.back().world_from_shape = glm::translate(glm::dmat4(1), glm::dvec3(2500, 100 * static_cast<double>(n), 0)) * glm::scale(glm::dmat4(1), glm::dvec3(1, n % 2 == 0 ? 12 : 1, 0.05));
+        things.back().world_from_shape =
+            glm::translate(glm::dmat4(1), glm::dvec3(2500, 100 * static_cast<double>(n), 0)) *
+            glm::scale(glm::dmat4(1), glm::dvec3(1, n % 2 == 0 ? 12 : 1, 0.05));
     }
     const auto map = map_of(things);
     EXPECT_LT(map->meshes.size(), count);
@@ -117,7 +129,8 @@ TEST(Ties, NearObjectsOffTheRaysDoNotMatter) {
     std::vector<Thing> things = tied_things();
     std::vector<Ray> rays;
     for (const Ray& ray : many_rays()) {
-        if (ray.origin.z < 8 && ray.direction.z < 0) rays.push_back(ray);
+        if (ray.origin.z < 8 && ray.direction.z < 0)
+            rays.push_back(ray);
     }
     const std::vector<Answer> before = answers(*scene_of(things), rays);
     for (int n = 0; n < 30; ++n) {
@@ -129,7 +142,8 @@ TEST(Ties, NearObjectsOffTheRaysDoNotMatter) {
     const std::vector<Answer> after = answers(*scene_of(things), rays);
     std::size_t compared = 0;
     for (std::size_t n = 0; n < rays.size(); ++n) {
-        if (!std::get<0>(before[n])) continue;
+        if (!std::get<0>(before[n]))
+            continue;
         ++compared;
         ASSERT_TRUE(after[n] == before[n]) << "ray " << n;
     }
@@ -144,13 +158,18 @@ TEST(Ties, ThreadsAndRebuildsAgree) {
     const std::vector<Answer> before = answers(*scene, rays);
     std::vector<std::vector<Answer>> found(4);
     std::vector<std::thread> threads;
-    for (std::size_t t = 0; t < 4; ++t) threads.emplace_back([&, t] { found[t] = answers(t < 2 ? *scene : *scene_of(map), rays); });
-    for (std::thread& thread : threads) thread.join();
-    for (const auto& answer : found) EXPECT_TRUE(answer == before);
+    for (std::size_t t = 0; t < 4; ++t)
+        threads.emplace_back([&, t] { found[t] = answers(t < 2 ? *scene : *scene_of(map), rays); });
+    for (std::thread& thread : threads)
+        thread.join();
+    for (const auto& answer : found)
+        EXPECT_TRUE(answer == before);
 }
 
 TEST(Ties, SmallerDigestWins) {
-    const auto map = map_of(std::vector<Thing>{thing_of(level_square(5), glm::vec3(0.2f)), thing_of(level_square(5), glm::vec3(0.4f)), thing_of(level_square(5), glm::vec3(0.6f))});
+    const auto map = map_of(std::vector<Thing>{thing_of(level_square(5), glm::vec3(0.2f)),
+                                               thing_of(level_square(5), glm::vec3(0.4f)),
+                                               thing_of(level_square(5), glm::vec3(0.6f))});
     const auto scene = scene_of(map);
     for (const float x : {-5.0f, -2.0f, 0.0f, 1.5f, 3.0f}) {
         const auto hit = scene->closest({{x, 1.5f, 2}, {0, 0, -1}, 9});
@@ -159,7 +178,8 @@ TEST(Ties, SmallerDigestWins) {
     }
 }
 
-// A thing of two one-sided skins in one place shows its front to both sides, whichever way it was modelled first.
+// A thing of two one-sided skins in one place shows its front to both sides, whichever way it was modelled
+// first.
 TEST(Ties, TwinTrianglesHaveTwoFronts) {
     for (const bool up_first : {true, false}) {
         const Shape up = level_square(5, 1.25f);
@@ -167,8 +187,10 @@ TEST(Ties, TwinTrianglesHaveTwoFronts) {
         both.indices.clear();
         for (std::size_t t = 0; t < up.indices.size(); t += 3) {
             const std::uint32_t a = up.indices[t], b = up.indices[t + 1], c = up.indices[t + 2];
-            if (up_first) both.indices.insert(both.indices.end(), {a, b, c, c, b, a});
-            else both.indices.insert(both.indices.end(), {b, a, c, b, c, a});
+            if (up_first)
+                both.indices.insert(both.indices.end(), {a, b, c, c, b, a});
+            else
+                both.indices.insert(both.indices.end(), {b, a, c, b, c, a});
         }
         Thing thing = thing_of(both, glm::vec3(0.5f));
         std::mt19937 random(9);
@@ -176,8 +198,10 @@ TEST(Ties, TwinTrianglesHaveTwoFronts) {
         const auto scene = scene_of(std::vector<Thing>{thing});
         int fronts = 0;
         for (int n = 0; n < 4000; ++n) {
-            const glm::dvec3 target(between(random, -4, 4), between(random, -4, 4), 1.25), from(between(random, -9, 9), between(random, -9, 9), between(random, -9, 9));
-            const glm::vec3 origin(thing.world_from_shape * glm::dvec4(from, 1)), to(thing.world_from_shape * glm::dvec4(target, 1));
+            const glm::dvec3 target(between(random, -4, 4), between(random, -4, 4), 1.25),
+                from(between(random, -9, 9), between(random, -9, 9), between(random, -9, 9));
+            const glm::vec3 origin(thing.world_from_shape * glm::dvec4(from, 1)),
+                to(thing.world_from_shape * glm::dvec4(target, 1));
             const auto hit = scene->closest({origin, glm::normalize(to - origin), 100});
             ASSERT_TRUE(hit);
             EXPECT_TRUE(hit->front);

@@ -1,8 +1,8 @@
 // No ray leaves a closed mesh between its triangles.
 #include "tests/trace/scenes.h"
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include <cmath>
 #include <cstdlib>
@@ -52,14 +52,17 @@ Shape sphere(std::uint32_t rings, std::uint32_t segments) {
         for (std::uint32_t s = 0; s < segments; ++s) {
             const double theta = std::numbers::pi * r / rings, phi = 2 * std::numbers::pi * s / segments;
             const double radius = r == 0 || r == rings ? 0 : std::sin(theta);
-            shape.positions.emplace_back(4 * radius * std::cos(phi), 4 * radius * std::sin(phi), 4 * std::cos(theta));
+            shape.positions.emplace_back(4 * radius * std::cos(phi), 4 * radius * std::sin(phi),
+                                         4 * std::cos(theta));
         }
     }
     for (std::uint32_t r = 0; r < rings; ++r) {
         for (std::uint32_t s = 0; s < segments; ++s) {
             const std::uint32_t a = r * segments + s, b = r * segments + (s + 1) % segments;
-            if (r > 0) shape.indices.insert(shape.indices.end(), {a, b, a + segments});
-            if (r + 1 < rings) shape.indices.insert(shape.indices.end(), {b, b + segments, a + segments});
+            if (r > 0)
+                shape.indices.insert(shape.indices.end(), {a, b, a + segments});
+            if (r + 1 < rings)
+                shape.indices.insert(shape.indices.end(), {b, b + segments, a + segments});
         }
     }
     return shape;
@@ -68,17 +71,21 @@ Shape sphere(std::uint32_t rings, std::uint32_t segments) {
 void expect_closed(const Shape& shape, bool turned, unsigned seed) {
     std::mt19937 random(seed);
     Thing thing = thing_of(shape);
-    if (turned) thing.world_from_shape = random_placement(random, 100, seed % 2 == 1);
+    if (turned)
+        thing.world_from_shape = random_placement(random, 100, seed % 2 == 1);
     const auto scene = scene_of(std::vector<Thing>{thing});
     const trace::FloatMode mode;
     int through_edges = 0, through_vertices = 0, through_both = 0;
     const int rays = rays_a_shape();
     for (int n = 0; n < rays; ++n) {
         const std::size_t t = random() % (shape.indices.size() / 3) * 3;
-        const glm::vec3 a = shape.positions[shape.indices[t + random() % 3]], b = shape.positions[shape.indices[t + random() % 3]];
-        const glm::vec3 target = a == b ? a : a + (b - a) * between(random, 0.01f, 0.99f);  // a vertex or a point of an edge
+        const glm::vec3 a = shape.positions[shape.indices[t + random() % 3]],
+                        b = shape.positions[shape.indices[t + random() % 3]];
+        const glm::vec3 target =
+            a == b ? a : a + (b - a) * between(random, 0.01f, 0.99f);  // a vertex or a point of an edge
         const glm::vec3 origin(between(random, -1, 1), between(random, -1, 1), between(random, -1, 1));
-        const glm::vec3 from = thing.world_from_shape * glm::dvec4(origin, 1), to = thing.world_from_shape * glm::dvec4(target, 1);
+        const glm::vec3 from = thing.world_from_shape * glm::dvec4(origin, 1),
+                        to = thing.world_from_shape * glm::dvec4(target, 1);
         const trace::Ray ray{from, glm::normalize(to - from), 1000};
         const bool closed = scene->closest(ray).has_value();
         EXPECT_EQ(scene->occluded(ray), closed);

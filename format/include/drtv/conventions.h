@@ -30,8 +30,11 @@ inline constexpr std::array<Float3, basis_count> transfer_basis = {{{-0.408248f,
                                                                     {0.816497f, 0.0f, 0.577350f},
                                                                     {0.0f, 0.0f, -1.0f}}};
 
-// What an open sky of radiance 1 gives to a cosine around basis direction b: the part of it that is above the horizon.
-[[nodiscard]] constexpr float open_sky_share(std::size_t b) { return (1 + transfer_basis[b][2]) / 2; }
+// What an open sky of radiance 1 gives to a cosine around basis direction b: the part of it that is above the
+// horizon.
+[[nodiscard]] constexpr float open_sky_share(std::size_t b) {
+    return (1 + transfer_basis[b][2]) / 2;
+}
 
 // Real spherical harmonics of bands 0 and 1, no Condon-Shortley sign.
 inline constexpr float sh_y0 = 0.282095f;
@@ -59,8 +62,8 @@ inline constexpr float sky_visibility_scale = 1.0f;
 inline constexpr float transfer_bound_y0 = 0.2821f;
 inline constexpr float transfer_bound_y1 = 0.4887f;
 
-// A scale that a file gives as an exponent: 2^exponent, exact, for an exponent of -126 to 126. One beyond counts as the
-// nearest, so that no file makes a scale that is not a normal float.
+// A scale that a file gives as an exponent: 2^exponent, exact, for an exponent of -126 to 126. One beyond
+// counts as the nearest, so that no file makes a scale that is not a normal float.
 [[nodiscard]] constexpr float scale_of_exponent(int exponent) {
     constexpr int limit = 126, float_bias = 127, float_mantissa_bits = 23;
     const auto biased = static_cast<std::uint32_t>(std::clamp(exponent, -limit, limit) + float_bias);
@@ -71,14 +74,17 @@ inline constexpr float transfer_bound_y1 = 0.4887f;
     return static_cast<float>(q) / fixed_point_max * scale;
 }
 
-// Nearest code to `value`, ties away from zero, saturated to +-32767. NaN gives 0. REQUIRES: `scale` is a power of
-// two, so that the quotient and all else up to the rounding are exact in double.
+// Nearest code to `value`, ties away from zero, saturated to +-32767. NaN gives 0. REQUIRES: `scale` is a
+// power of two, so that the quotient and all else up to the rounding are exact in double.
 [[nodiscard]] constexpr std::int16_t encode_fixed(float value, float scale) {
     constexpr double max = fixed_point_max;
     const double q = static_cast<double>(value) / static_cast<double>(scale) * max;
-    if (!(q == q)) return 0;
-    if (q >= max) return 32767;
-    if (q <= -max) return -32767;
+    if (!(q == q))
+        return 0;
+    if (q >= max)
+        return 32767;
+    if (q <= -max)
+        return -32767;
     return static_cast<std::int16_t>(q + (q < 0 ? -0.5 : 0.5));
 }
 

@@ -1,5 +1,6 @@
-// The table of all that a validator can find. A code never changes its meaning, and none is used again: `STRUCTURE` of drtv 0.1.0
-// is retired, in its place stand the codes of the group structure. format/ISSUES.md is made from this table (`drtv issues`).
+// The table of all that a validator can find. A code never changes its meaning, and none is used again:
+// `STRUCTURE` of drtv 0.1.0 is retired, in its place stand the codes of the group structure. format/ISSUES.md
+// is made from this table (`drtv issues`).
 #pragma once
 
 #include <cstdint>
@@ -31,63 +32,139 @@ struct Issue {
 };
 
 struct Error : Issue {
-    constexpr Error(std::string_view code_, IssueGroup group_, std::string_view meaning_) : Issue{code_, Severity::error, group_, meaning_} {}
+    constexpr Error(std::string_view code_, IssueGroup group_, std::string_view meaning_)
+        : Issue{code_, Severity::error, group_, meaning_} {}
 };
 struct Warning : Issue {
-    constexpr Warning(std::string_view code_, IssueGroup group_, std::string_view meaning_) : Issue{code_, Severity::warning, group_, meaning_} {}
+    constexpr Warning(std::string_view code_, IssueGroup group_, std::string_view meaning_)
+        : Issue{code_, Severity::warning, group_, meaning_} {}
 };
 
 namespace issue {
 
 using enum IssueGroup;
 
-inline constexpr Error not_a_sector_file("NOT_A_SECTOR_FILE", structure, "the file is too short, or does not start with DRTV");
-inline constexpr Error unsupported_version("UNSUPPORTED_VERSION", structure, "the file, or a section that it must have, is of another version");
+inline constexpr Error not_a_sector_file("NOT_A_SECTOR_FILE",
+                                         structure,
+                                         "the file is too short, or does not start with DRTV");
+inline constexpr Error unsupported_version("UNSUPPORTED_VERSION",
+                                           structure,
+                                           "the file, or a section that it must have, is of another version");
 inline constexpr Error truncated("TRUNCATED", structure, "the file is shorter than its header says");
 inline constexpr Error trailing_bytes("TRAILING_BYTES", structure, "the file is longer than its header says");
 inline constexpr Error header("HEADER", structure, "a field of the header breaks its rule");
 inline constexpr Error table("TABLE", structure, "an entry of the table of sections breaks its rule");
-inline constexpr Error checksum("CHECKSUM", structure, "a stored checksum does not match the bytes it covers");
-inline constexpr Error missing_section("MISSING_SECTION", structure, "a section that every file has is not there");
-inline constexpr Error section("SECTION", structure, "the content of a section breaks a rule of its structure");
-inline constexpr Warning unknown_section("UNKNOWN_SECTION", structure, "a section is of a kind or version that this validator does not know; it was not looked into");
+inline constexpr Error checksum("CHECKSUM",
+                                structure,
+                                "a stored checksum does not match the bytes it covers");
+inline constexpr Error missing_section("MISSING_SECTION",
+                                       structure,
+                                       "a section that every file has is not there");
+inline constexpr Error section("SECTION",
+                               structure,
+                               "the content of a section breaks a rule of its structure");
+inline constexpr Warning unknown_section(
+    "UNKNOWN_SECTION",
+    structure,
+    "a section is of a kind or version that this validator does not know; it was not looked into");
 
-inline constexpr Error fixed_point_reserved("FIXED_POINT_RESERVED", quantisation, "a coefficient has the reserved code -32768");
-inline constexpr Warning fixed_point_saturated("FIXED_POINT_SATURATED", quantisation, "a coefficient has the largest code under the largest exponent: its value may have been larger");
-inline constexpr Error static_exponent("STATIC_EXPONENT", quantisation, "the exponent of a static irradiance lies outside -64 to 64");
-inline constexpr Error local_exponent("LOCAL_EXPONENT", quantisation, "the exponents of a pair's receiver and source add up to less than -126 or more than 63");
+inline constexpr Error fixed_point_reserved("FIXED_POINT_RESERVED",
+                                            quantisation,
+                                            "a coefficient has the reserved code -32768");
+inline constexpr Warning fixed_point_saturated(
+    "FIXED_POINT_SATURATED",
+    quantisation,
+    "a coefficient has the largest code under the largest exponent: its value may have been larger");
+inline constexpr Error static_exponent("STATIC_EXPONENT",
+                                       quantisation,
+                                       "the exponent of a static irradiance lies outside -64 to 64");
+inline constexpr Error local_exponent(
+    "LOCAL_EXPONENT",
+    quantisation,
+    "the exponents of a pair's receiver and source add up to less than -126 or more than 63");
 
-inline constexpr Error sky_visibility_range("SKY_VISIBILITY_RANGE", physics, "a sky visibility lies outside [0, 1]");
-inline constexpr Error sky_visibility_down("SKY_VISIBILITY_DOWN", physics, "the sky visibility of the downward direction is not 0");
-inline constexpr Error transfer_range("TRANSFER_RANGE", physics, "a transfer coefficient is larger than a passive scene allows");
-inline constexpr Error transfer_sign("TRANSFER_SIGN", physics, "a transfer coefficient of Y0 or Y2 is negative: more light from above would give less");
-inline constexpr Error transfer_band("TRANSFER_BAND", physics, "a transfer coefficient is more than sqrt(3) times that of Y0: light would be negative");
+inline constexpr Error sky_visibility_range("SKY_VISIBILITY_RANGE",
+                                            physics,
+                                            "a sky visibility lies outside [0, 1]");
+inline constexpr Error sky_visibility_down("SKY_VISIBILITY_DOWN",
+                                           physics,
+                                           "the sky visibility of the downward direction is not 0");
+inline constexpr Error transfer_range("TRANSFER_RANGE",
+                                      physics,
+                                      "a transfer coefficient is larger than a passive scene allows");
+inline constexpr Error transfer_sign(
+    "TRANSFER_SIGN",
+    physics,
+    "a transfer coefficient of Y0 or Y2 is negative: more light from above would give less");
+inline constexpr Error transfer_band(
+    "TRANSFER_BAND",
+    physics,
+    "a transfer coefficient is more than sqrt(3) times that of Y0: light would be negative");
 inline constexpr Error energy("ENERGY", physics, "under a sky of radiance 1 a probe sees more than 1");
-inline constexpr Error static_irradiance_range("STATIC_IRRADIANCE_RANGE", physics, "a static irradiance is negative");
-inline constexpr Error local_transfer_range("LOCAL_TRANSFER_RANGE", physics, "a local transfer coefficient is larger than light that is nowhere negative allows");
-inline constexpr Warning local_reciprocity("LOCAL_RECIPROCITY", physics, "local transfer there and back has little in common: rows may belong to other probes, or most probes touch a wall");
+inline constexpr Error static_irradiance_range("STATIC_IRRADIANCE_RANGE",
+                                               physics,
+                                               "a static irradiance is negative");
+inline constexpr Error local_transfer_range(
+    "LOCAL_TRANSFER_RANGE",
+    physics,
+    "a local transfer coefficient is larger than light that is nowhere negative allows");
+inline constexpr Warning local_reciprocity("LOCAL_RECIPROCITY",
+                                           physics,
+                                           "local transfer there and back has little in common: rows may "
+                                           "belong to other probes, or most probes touch a wall");
 inline constexpr Error interior_open("INTERIOR_OPEN", physics, "the mesh of an interior is not closed");
-inline constexpr Warning interior_inside_out("INTERIOR_INSIDE_OUT", physics, "the mesh of an interior encloses no volume, or its triangles face inwards");
-inline constexpr Warning interior_probe("INTERIOR_PROBE", physics, "the probe of an interior stands outside of its bounds");
+inline constexpr Warning interior_inside_out(
+    "INTERIOR_INSIDE_OUT",
+    physics,
+    "the mesh of an interior encloses no volume, or its triangles face inwards");
+inline constexpr Warning interior_probe("INTERIOR_PROBE",
+                                        physics,
+                                        "the probe of an interior stands outside of its bounds");
 inline constexpr Error settings_range("SETTINGS_RANGE", physics, "a recorded setting lies outside its range");
-inline constexpr Error convergence_range("CONVERGENCE_RANGE", physics, "a recorded error or number of paths is negative or out of order");
+inline constexpr Error convergence_range("CONVERGENCE_RANGE",
+                                         physics,
+                                         "a recorded error or number of paths is negative or out of order");
 
 inline constexpr Error grid_reference("GRID_REFERENCE", index, "a grid cell names a probe that is not there");
-inline constexpr Error grid_no_probe("GRID_NO_PROBE", index, "a grid cell is empty although the sector has probes");
-inline constexpr Error grid_not_nearest("GRID_NOT_NEAREST", index, "a grid cell names a probe that is not one of the 4 nearest to its centre");
-inline constexpr Error duplicate_position("DUPLICATE_POSITION", index, "two probes stand at the same position");
-inline constexpr Error local_source_count("LOCAL_SOURCE_COUNT", index, "a probe takes light from more than 128 local sources");
-inline constexpr Error local_source_duplicate("LOCAL_SOURCE_DUPLICATE", index, "two local sources are the same probe");
+inline constexpr Error grid_no_probe("GRID_NO_PROBE",
+                                     index,
+                                     "a grid cell is empty although the sector has probes");
+inline constexpr Error grid_not_nearest(
+    "GRID_NOT_NEAREST", index, "a grid cell names a probe that is not one of the 4 nearest to its centre");
+inline constexpr Error duplicate_position("DUPLICATE_POSITION",
+                                          index,
+                                          "two probes stand at the same position");
+inline constexpr Error local_source_count("LOCAL_SOURCE_COUNT",
+                                          index,
+                                          "a probe takes light from more than 128 local sources");
+inline constexpr Error local_source_duplicate("LOCAL_SOURCE_DUPLICATE",
+                                              index,
+                                              "two local sources are the same probe");
 
-inline constexpr Error neighbour_source("NEIGHBOUR_SOURCE", borders, "a local source is a probe that the neighbouring sector does not have");
-inline constexpr Error neighbour_distance("NEIGHBOUR_DISTANCE", borders, "automatic probes on both sides of a border stand nearer than the minimal distance: the sectors were placed on different maps");
-inline constexpr Warning neighbour_sections("NEIGHBOUR_SECTIONS", borders, "of two neighbouring sectors one has a section of light that the other has not");
-inline constexpr Warning neighbour_step("NEIGHBOUR_STEP", borders, "light changes across a border much more than inside the two sectors: they were baked of different maps, or a wall stands on the border");
+inline constexpr Error neighbour_source(
+    "NEIGHBOUR_SOURCE", borders, "a local source is a probe that the neighbouring sector does not have");
+inline constexpr Error neighbour_distance("NEIGHBOUR_DISTANCE",
+                                          borders,
+                                          "automatic probes on both sides of a border stand nearer than the "
+                                          "minimal distance: the sectors were placed on different maps");
+inline constexpr Warning neighbour_sections(
+    "NEIGHBOUR_SECTIONS",
+    borders,
+    "of two neighbouring sectors one has a section of light that the other has not");
+inline constexpr Warning neighbour_step(
+    "NEIGHBOUR_STEP",
+    borders,
+    "light changes across a border much more than inside the two sectors: they were baked of different maps, "
+    "or a wall stands on the border");
 
 inline constexpr Error set_duplicate("SET_DUPLICATE", set, "two files hold the same sector");
-inline constexpr Error set_settings("SET_SETTINGS", set, "the sector was baked with another settings key than most of the folder");
+inline constexpr Error set_settings("SET_SETTINGS",
+                                    set,
+                                    "the sector was baked with another settings key than most of the folder");
 inline constexpr Warning set_hole("SET_HOLE", set, "a sector is missing although sectors are all around it");
-inline constexpr Warning set_file_name("SET_FILE_NAME", set, "the file is named for another sector than it holds");
+inline constexpr Warning set_file_name("SET_FILE_NAME",
+                                       set,
+                                       "the file is named for another sector than it holds");
 
 }  // namespace issue
 

@@ -1,5 +1,5 @@
-// Reading a sector file from untrusted bytes. Never throws on bad input, never reads outside `bytes`, allocates
-// little more than twice what its sections say they hold: some kilobytes, 16 MiB a section at most.
+// Reading a sector file from untrusted bytes. Never throws on bad input, never reads outside `bytes`,
+// allocates little more than twice what its sections say they hold: some kilobytes, 16 MiB a section at most.
 #pragma once
 
 #include <drtv/sector.h>
@@ -29,8 +29,9 @@ enum class ReadError : std::uint8_t {
 
 struct [[nodiscard]] ReadStatus {
     ReadError error = ReadError::none;
-    std::uint64_t offset = 0;  // byte in the file at which the rule is broken; a compressed section's first byte
-    std::string message;       // what, where, value; empty when there is no error
+    std::uint64_t offset =
+        0;                // byte in the file at which the rule is broken; a compressed section's first byte
+    std::string message;  // what, where, value; empty when there is no error
 
     [[nodiscard]] bool ok() const { return error == ReadError::none; }
 };
@@ -59,10 +60,10 @@ struct SectionEntry {
     std::uint16_t kind = 0;  // a SectionKind, or one that this reader skips
     std::uint16_t version = 0;
     std::uint8_t codec = 0;
-    std::uint32_t offset = 0;       // from the start of the file, a multiple of 16
-    std::uint32_t stored_bytes = 0; // in the file
-    std::uint32_t raw_bytes = 0;    // after decoding
-    std::uint64_t checksum = 0;     // XXH64 of the stored bytes
+    std::uint32_t offset = 0;        // from the start of the file, a multiple of 16
+    std::uint32_t stored_bytes = 0;  // in the file
+    std::uint32_t raw_bytes = 0;     // after decoding
+    std::uint64_t checksum = 0;      // XXH64 of the stored bytes
 };
 
 // "bake", "positions", ... or "unknown".

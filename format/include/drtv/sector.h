@@ -33,8 +33,9 @@ struct Probe {
     bool operator==(const Probe&) const = default;
 };
 
-// A probe a cell, the nearest that its centre sees. Cell (x, y, z) stands at index x + 16 y + 256 z; cells are 4 m wide.
-// The reader takes any index: one that is not below the number of probes counts as `no_probe` (SPEC.md, section 5.5).
+// A probe a cell, the nearest that its centre sees. Cell (x, y, z) stands at index x + 16 y + 256 z; cells
+// are 4 m wide. The reader takes any index: one that is not below the number of probes counts as `no_probe`
+// (SPEC.md, section 5.5).
 struct Grid {
     std::int32_t z_origin_units = 0;      // bottom of the lowest cells, 2^-10 m
     std::uint32_t cell_height_units = 1;  // 2^-10 m, 1 to 2^24
@@ -45,11 +46,12 @@ struct Grid {
 
 // What was asked of the baker, and who it was. Equal settings_key: comparable files.
 struct BakeRecord {
-    std::uint32_t rays = 0;      // primary rays a probe
-    std::uint32_t bounces = 0;   // surface bounces
-    float reach_m = 0;           // farther than this from the probe is sky
-    float min_distance_m = 0;    // between automatic probes
-    std::array<std::uint8_t, 32> settings_key{};  // SHA-256 over settings, format version, baker and ISA class
+    std::uint32_t rays = 0;     // primary rays a probe
+    std::uint32_t bounces = 0;  // surface bounces
+    float reach_m = 0;          // farther than this from the probe is sky
+    float min_distance_m = 0;   // between automatic probes
+    std::array<std::uint8_t, 32>
+        settings_key{};  // SHA-256 over settings, format version, baker and ISA class
     bool operator==(const BakeRecord&) const = default;
 };
 
@@ -67,10 +69,12 @@ struct Statistics {
     bool operator==(const Statistics&) const = default;
 };
 
-// [channel r, g, b][basis direction or SH coefficient], fixed point; the scale stands beside it as an exponent.
+// [channel r, g, b][basis direction or SH coefficient], fixed point; the scale stands beside it as an
+// exponent.
 using LightCodes = std::array<std::array<std::int16_t, 4>, channel_count>;
 
-// E/pi around each basis direction from the map's own lights, direct and bounced: codes[c][b], scale 2^exponent.
+// E/pi around each basis direction from the map's own lights, direct and bounced: codes[c][b], scale
+// 2^exponent.
 struct StaticIrradiance {
     LightCodes codes{};
     std::int8_t exponent = 0;
@@ -78,7 +82,8 @@ struct StaticIrradiance {
     bool operator==(const StaticIrradiance&) const = default;
 };
 
-// A probe whose place a local light may have: probe `probe` of the sector (i + di, j + dj), di and dj in -1..1.
+// A probe whose place a local light may have: probe `probe` of the sector (i + di, j + dj), di and dj in
+// -1..1.
 struct LocalSource {
     std::int8_t di = 0, dj = 0;
     std::uint8_t probe = 0;
@@ -87,10 +92,11 @@ struct LocalSource {
     bool operator==(const LocalSource&) const = default;
 };
 
-// One probe's row of the matrix receiver x source, which is sparse: which pairs there are and where they begin.
+// One probe's row of the matrix receiver x source, which is sparse: which pairs there are and where they
+// begin.
 struct LocalReceiver {
     std::uint32_t first_pair = 0;
-    std::int8_t exponent = 0;               // its part of the scale of its pairs
+    std::int8_t exponent = 0;                // its part of the scale of its pairs
     std::array<std::uint8_t, 32> sources{};  // bit s & 7 of byte s >> 3: source s has a pair
 
     bool operator==(const LocalReceiver&) const = default;
@@ -101,8 +107,8 @@ struct LocalReceiver {
     return (receiver.sources[s >> 3] >> (s & 7) & 1) != 0;
 }
 
-// Light that a local light at a source's place sends to a receiver by bounce (SPEC.md, section 5.8). Pair n of receiver
-// p and source s: R_c[i] = 2^(receiver exponent + source exponent) * code / 32767.
+// Light that a local light at a source's place sends to a receiver by bounce (SPEC.md, section 5.8). Pair n
+// of receiver p and source s: R_c[i] = 2^(receiver exponent + source exponent) * code / 32767.
 struct LocalTransfer {
     std::vector<LocalSource> sources;      // at most 255
     std::vector<LocalReceiver> receivers;  // one a probe
@@ -114,25 +120,26 @@ struct LocalTransfer {
 // What was asked and what was reached, when it was measured.
 struct Convergence {
     // Relative standard error of E/pi relit by a sky of radiance 1 (SPEC.md, section 5.9).
-    float error_asked = 0;                                  // 0: a fixed number of paths
-    float error_median = 0, error_p95 = 0, error_max = 0;   // over the sector's probes
-    std::uint32_t paths_least = 0, paths_most = 0;          // a probe
-    std::uint32_t local_bounces = 0;                        // 0 where the file has no local transfer
-    std::uint32_t local_rays = 0;                           // traced from each source; 0 likewise
-    std::uint64_t static_rays = 0;                          // for static irradiance, shadow rays included
+    float error_asked = 0;                                 // 0: a fixed number of paths
+    float error_median = 0, error_p95 = 0, error_max = 0;  // over the sector's probes
+    std::uint32_t paths_least = 0, paths_most = 0;         // a probe
+    std::uint32_t local_bounces = 0;                       // 0 where the file has no local transfer
+    std::uint32_t local_rays = 0;                          // traced from each source; 0 likewise
+    std::uint64_t static_rays = 0;                         // for static irradiance, shadow rays included
     std::uint64_t local_transfer_rays = 0;
 
     bool operator==(const Convergence&) const = default;
 };
 
-// A closed mesh; what is inside uses one probe (s56). Vertex v stands at the world position, in units of 2^-10 m,
-// origin_units + vertices[v] * 2^shift.
+// A closed mesh; what is inside uses one probe (s56). Vertex v stands at the world position, in units of
+// 2^-10 m, origin_units + vertices[v] * 2^shift.
 struct Interior {
     std::array<std::int32_t, 3> origin_units{};
     std::uint8_t shift = 0;  // at most max_interior_shift
     std::uint8_t probe = 0;  // of this sector
     std::vector<std::array<std::uint16_t, 3>> vertices;
-    std::vector<std::array<std::uint16_t, 3>> triangles;  // indices of vertices, counter-clockwise seen from outside
+    std::vector<std::array<std::uint16_t, 3>>
+        triangles;  // indices of vertices, counter-clockwise seen from outside
 
     bool operator==(const Interior&) const = default;
 };
@@ -158,14 +165,16 @@ struct Sector {
 // A sector coordinate is refused beyond this, so that no position leaves the exact range of 32-bit units.
 inline constexpr std::int32_t max_sector_coordinate = 1 << 14;
 inline constexpr std::uint8_t max_z_shift = 10;
-inline constexpr std::int32_t max_z_origin_units = 1 << 30;         // of the sector and of the grid
-inline constexpr std::uint32_t max_cell_height_units = 1u << 24;   // so that 16 cells fit 32 bits too
+inline constexpr std::int32_t max_z_origin_units = 1 << 30;       // of the sector and of the grid
+inline constexpr std::uint32_t max_cell_height_units = 1u << 24;  // so that 16 cells fit 32 bits too
 inline constexpr std::size_t max_interiors = 1024;
 inline constexpr std::size_t max_interior_vertices = 1u << 16;  // of one interior
-inline constexpr std::size_t max_interiors_vertices = 1u << 21;  // of all together, so that they fit a section
+inline constexpr std::size_t max_interiors_vertices = 1u
+                                                      << 21;  // of all together, so that they fit a section
 inline constexpr std::size_t max_interior_triangles = 1u << 18;  // of all together
 inline constexpr std::uint8_t max_interior_shift = 10;
-inline constexpr std::int32_t max_interior_origin_units = (1 << 30) + (1 << 27);  // 131 km beyond the farthest sector
+inline constexpr std::int32_t max_interior_origin_units =
+    (1 << 30) + (1 << 27);  // 131 km beyond the farthest sector
 
 // World position of a probe in units of 2^-10 m, exact.
 [[nodiscard]] std::array<std::int32_t, 3> position_units(const Sector& sector, const Probe& probe);

@@ -21,9 +21,9 @@ struct Finding {
 };
 
 struct Report {
-    std::vector<Finding> findings;    // by section in the order of their kinds
+    std::vector<Finding> findings;         // by section in the order of their kinds
     std::size_t errors = 0, warnings = 0;  // all of them, also those behind the cap
-    bool truncated = false;           // there are more than `findings` shows
+    bool truncated = false;                // there are more than `findings` shows
 
     [[nodiscard]] bool valid() const { return errors == 0; }
 };
@@ -31,13 +31,16 @@ struct Report {
 struct ValidateOptions {
     bool quick = false;              // structure and checksums only: what a reader checks
     std::size_t max_findings = 100;  // shown; REQUIRES: > 0
-    std::span<const Issue* const> ignored = {};  // neither shown nor counted; errors of the structure are nevertheless
+    std::span<const Issue* const> ignored =
+        {};  // neither shown nor counted; errors of the structure are nevertheless
 };
 
-// Counts a finding of this issue, unless it is ignored. True where it is to be appended to report.findings: not behind the cap.
+// Counts a finding of this issue, unless it is ignored. True where it is to be appended to report.findings:
+// not behind the cap.
 [[nodiscard]] bool admit(Report& report, const Issue& issue, const ValidateOptions& options);
 
 // Any bytes give a report. Thread-safe.
-[[nodiscard]] Report validate_sector(std::span<const std::uint8_t> bytes, const ValidateOptions& options = {});
+[[nodiscard]] Report validate_sector(std::span<const std::uint8_t> bytes,
+                                     const ValidateOptions& options = {});
 
 }  // namespace drtv

@@ -1,4 +1,5 @@
-// What sectors of one region owe each other: they tile a map without holes, were baked alike, and fit at their borders.
+// What sectors of one region owe each other: they tile a map without holes, were baked alike, and fit at
+// their borders.
 #pragma once
 
 #include <drtv/read.h>
@@ -24,7 +25,8 @@ struct RegionSector {
     std::vector<std::array<std::int32_t, 3>> positions;  // world, units; exact to `position_step_units`
     std::vector<ProbeKind> kinds;
     std::int32_t position_step_units = 1;
-    std::vector<std::array<float, basis_count * channel_count>> light;  // E/pi under a white sky of radiance 1, [b][c]
+    std::vector<std::array<float, basis_count * channel_count>>
+        light;  // E/pi under a white sky of radiance 1, [b][c]
     Grid grid;
     bool has_local_transfer = false;
     std::vector<LocalSource> local_sources;
@@ -40,8 +42,10 @@ struct RegionFinding {
     Finding finding;
 };
 
-// Findings of the groups `borders` and `set`, by sector, then in the order of the table of issues. The order of `sectors` decides
-// nothing but which of two files of one sector counts. Sectors `also_there` are (i, j) of files that cannot be read: no holes.
-[[nodiscard]] std::vector<RegionFinding> validate_region(std::span<const RegionSector> sectors, std::span<const std::array<std::int32_t, 2>> also_there = {});
+// Findings of the groups `borders` and `set`, by sector, then in the order of the table of issues. The order
+// of `sectors` decides nothing but which of two files of one sector counts. Sectors `also_there` are (i, j)
+// of files that cannot be read: no holes.
+[[nodiscard]] std::vector<RegionFinding> validate_region(
+    std::span<const RegionSector> sectors, std::span<const std::array<std::int32_t, 2>> also_there = {});
 
 }  // namespace drtv

@@ -13,7 +13,8 @@
 
 namespace drtv {
 
-static_assert(std::endian::native == std::endian::little, "the file's integers are little-endian and used as they lie");
+static_assert(std::endian::native == std::endian::little,
+              "the file's integers are little-endian and used as they lie");
 
 // What stands in the file, byte for byte (SPEC.md, section 5).
 struct StoredPosition {
@@ -38,10 +39,11 @@ struct StoredInterior {
     std::array<std::uint8_t, 2> reserved;
     std::uint32_t first_vertex, vertex_count, first_triangle, triangle_count;
 };
-static_assert(sizeof(StoredPosition) == 8 && sizeof(StoredGrid) == 4112 && sizeof(StoredReceiver) == 8 && sizeof(StoredInterior) == 32);
+static_assert(sizeof(StoredPosition) == 8 && sizeof(StoredGrid) == 4112 && sizeof(StoredReceiver) == 8 &&
+              sizeof(StoredInterior) == 32);
 
-// Points into the file's bytes and lives no longer than they do. Probe p of one span is probe p of every other. Spans of
-// optional sections are empty where the file has none.
+// Points into the file's bytes and lives no longer than they do. Probe p of one span is probe p of every
+// other. Spans of optional sections are empty where the file has none.
 struct SectorView {
     std::int32_t i = 0, j = 0;
     std::int32_t z_origin_units = 0;
@@ -52,46 +54,52 @@ struct SectorView {
     std::span<const VisibilityCodes> sky_visibility;
     std::span<const TransferCodes> transfer;
     const StoredGrid* grid = nullptr;
-    std::span<const LightCodes> static_irradiance;       // [c][b], scale 2^exponent
+    std::span<const LightCodes> static_irradiance;  // [c][b], scale 2^exponent
     std::span<const std::int8_t> static_exponents;
     std::span<const LocalSource> local_sources;
     std::span<const StoredReceiver> local_receivers;
-    std::span<const std::uint8_t> local_masks;           // local_mask_bytes a receiver
+    std::span<const std::uint8_t> local_masks;  // local_mask_bytes a receiver
     std::size_t local_mask_bytes = 0;
-    std::span<const LightCodes> local_pairs;             // [c][i], scale 2^(receiver's + source's exponent)
+    std::span<const LightCodes> local_pairs;  // [c][i], scale 2^(receiver's + source's exponent)
     std::span<const StoredInterior> interiors;
-    std::span<const std::array<std::uint16_t, 3>> interior_vertices;   // all interiors'
-    std::span<const std::array<std::uint16_t, 3>> interior_triangles;  // indices within their interior's vertices
+    std::span<const std::array<std::uint16_t, 3>> interior_vertices;  // all interiors'
+    std::span<const std::array<std::uint16_t, 3>>
+        interior_triangles;  // indices within their interior's vertices
 };
 
-// The sector that lies in `bytes`. Checks all that read_sector checks, untrusted bytes are safe. Allocates nothing, unless it
-// fails (the message). A file with a compressed section fails with `compressed`: see unpack_sector. On error `view` is left
-// as it was. REQUIRES for success: `bytes` starts at a multiple of 16 (a mapped file does), else `misaligned`.
+// The sector that lies in `bytes`. Checks all that read_sector checks, untrusted bytes are safe. Allocates
+// nothing, unless it fails (the message). A file with a compressed section fails with `compressed`: see
+// unpack_sector. On error `view` is left as it was. REQUIRES for success: `bytes` starts at a multiple of 16
+// (a mapped file does), else `misaligned`.
 ReadStatus open_sector(std::span<const std::uint8_t> bytes, SectorView& view);
 
-// The same file with every section raw. Of sections that this reader does not know, nothing is kept. On error `raw_file` is left
-// as it was. (A vector's bytes start at a multiple of 16 with the allocators of 64-bit systems, so that they can be opened.)
+// The same file with every section raw. Of sections that this reader does not know, nothing is kept. On error
+// `raw_file` is left as it was. (A vector's bytes start at a multiple of 16 with the allocators of 64-bit
+// systems, so that they can be opened.)
 ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& raw_file);
 
-// World position of a probe in metres; exact in float within 16 km of the origin. REQUIRES: p < sector.probe_count.
+// World position of a probe in metres; exact in float within 16 km of the origin. REQUIRES: p <
+// sector.probe_count.
 [[nodiscard]] Float3 position_m(const SectorView& sector, std::size_t p);
 
-// The probe that lights a world position, by the grid (SPEC.md, section 5.5); `no_probe` where the sector has none: then nothing is added. What is beside,
-// above or below the grid takes the nearest cell.
+// The probe that lights a world position, by the grid (SPEC.md, section 5.5); `no_probe` where the sector has
+// none: then nothing is added. What is beside, above or below the grid takes the nearest cell.
 [[nodiscard]] std::uint8_t find_probe(const SectorView& sector, const Float3& world_m);
 
 // REQUIRES: the sector has static irradiance, p < sector.probe_count.
 [[nodiscard]] StaticIrradiance static_irradiance_of(const SectorView& sector, std::size_t p);
 
-// What a light at source `s` (an index of local_sources) sends to probe `p` by bounce. Codes are null where the two are no pair: then the light
-// adds nothing. REQUIRES: the sector has local transfer, p < sector.probe_count, s < sector.local_sources.size().
+// What a light at source `s` (an index of local_sources) sends to probe `p` by bounce. Codes are null where
+// the two are no pair: then the light adds nothing. REQUIRES: the sector has local transfer, p <
+// sector.probe_count, s < sector.local_sources.size().
 struct LocalPair {
     const LightCodes* codes = nullptr;
     float scale = 0;
 };
 [[nodiscard]] LocalPair find_local_pair(const SectorView& sector, std::size_t p, std::size_t s);
 
-// Whether a world position is inside the closed mesh, by its winding number, so that triangles without an area do no harm; on the mesh itself either.
+// Whether a world position is inside the closed mesh, by its winding number, so that triangles without an
+// area do no harm; on the mesh itself either.
 [[nodiscard]] bool is_inside(const SectorView& sector, const StoredInterior& interior, const Float3& world_m);
 
 // The first interior that holds a world position; null where none does.

@@ -23,14 +23,21 @@ using BasisColours = std::array<Float3, basis_count>;
 // Bounce of sky and sun plus the direct sky weighted by visibility (s28-s29).
 [[nodiscard]] BasisColours relight(const Probe& probe, const DistantLight& sky, const DistantLight& sun);
 // The same from a probe's codes where they lie (drtv/view.h).
-[[nodiscard]] BasisColours relight(const TransferCodes& transfer, const VisibilityCodes& sky_visibility, const DistantLight& sky, const DistantLight& sun);
+[[nodiscard]] BasisColours relight(const TransferCodes& transfer,
+                                   const VisibilityCodes& sky_visibility,
+                                   const DistantLight& sky,
+                                   const DistantLight& sun);
 
 // Adds the light of the map's own lights, which no time of day changes.
 void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light);
 
-// What a light at a local source adds to the ambient light at a unit normal, by bounce: its direct light is the game's. `pair` and `scale` are what
-// find_local_pair gives, `intensity` is the light's in W/sr. Noise can make it a little less than 0.
-[[nodiscard]] Float3 shade_local(const LightCodes& pair, float scale, const Float3& intensity, const Float3& normal);
+// What a light at a local source adds to the ambient light at a unit normal, by bounce: its direct light is
+// the game's. `pair` and `scale` are what find_local_pair gives, `intensity` is the light's in W/sr. Noise
+// can make it a little less than 0.
+[[nodiscard]] Float3 shade_local(const LightCodes& pair,
+                                 float scale,
+                                 const Float3& intensity,
+                                 const Float3& normal);
 
 // Ambient at a unit normal by the basis weights of the shader (s43-s44).
 [[nodiscard]] Float3 shade_ambient(const BasisColours& colours, const Float3& normal);
