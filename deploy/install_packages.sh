@@ -10,7 +10,10 @@ packages=(
   protobuf-compiler protobuf-compiler-grpc
 )
 if [[ "${1:-}" == "--tests" ]]; then
-  packages+=(clang-14 libbenchmark-dev libclang-rt-14-dev libgmock-dev libgtest-dev libxxhash-dev python3-jsonschema qemu-user util-linux)
+  packages+=(
+    black clang-14 clang-format-14 libbenchmark-dev libclang-rt-14-dev libgmock-dev libgtest-dev libxxhash-dev
+    python3-jsonschema qemu-user shellcheck util-linux
+  )
 fi
 
 missing=()
