@@ -1,8 +1,8 @@
 // What one probe gets from sky and static lights (DESIGN section 2; s19-s21), by paths from the probe.
 #pragma once
 
-#include "bakerd/bake/footprint_recorder.h"
 #include "bakerd/bake/lights.h"
+#include "bakerd/bake/ray_watch.h"
 #include "bakerd/bake/sampling.h"
 #include "bakerd/trace/scene.h"
 
@@ -10,7 +10,7 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <utility>
 #include <vector>
 
 namespace drtv::bake {
@@ -27,8 +27,8 @@ struct ProbeLight {
     std::uint64_t rays = 0;                           // of the paths
     std::uint64_t shadow_rays = 0;                    // to static lights
     std::uint64_t back_hits = 0;                      // rays absorbed by the back of a one-sided surface
-    std::vector<std::pair<std::uint32_t, std::uint32_t>>
-        back_hit_objects;  // of the map, with their share of back_hits; by object
+    // Of back_hits the share of each object of the map that has one; by object.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> back_hit_objects;
 };
 
 struct IntegrationSettings {
@@ -40,29 +40,17 @@ struct IntegrationSettings {
     float error = 0;
 };
 
-// Rays in the order in which they were shot (but for the few that are looked at twice), so that others can be
-// measured on them.
-struct RayLog {
-    std::vector<trace::Ray> paths, shadows;
-};
-
-// Who is told of the rays.
-struct RayWatch {
-    FootprintRecorder* footprint = nullptr;  // of all rays but the first of each path
-    RayLog* log = nullptr;
-};
-
 // Numbers per path that `samples` should have.
 [[nodiscard]] std::uint32_t sample_dimensions(std::uint32_t bounces, bool with_lights);
 
 // A pure function of the triangles and lights within reach and the arguments. `samples` has at least
-// sample_dimensions(bounces, false) dimensions. REQUIRES: a FloatMode on this thread; the recorder has begun
-// with this probe.
+// sample_dimensions(bounces, false) dimensions. `watch`, where there is one, is told of every ray, but for
+// the few that are looked at twice. REQUIRES: a FloatMode on this thread.
 [[nodiscard]] ProbeLight integrate_probe(const trace::Scene& scene,
                                          const StaticLights& lights,
                                          const glm::ivec3& position_units,
                                          const SampleTable& samples,
                                          const IntegrationSettings& settings,
-                                         const RayWatch& watch = {});
+                                         RayWatch* watch = nullptr);
 
 }  // namespace drtv::bake

@@ -127,4 +127,39 @@ tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
     return interior;
 }
 
+tl::expected<void, std::string> store_interiors(std::span<const InteriorVolume> interiors,
+                                                std::span<const placement::Position> positions,
+                                                Sector& sector) {
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;
+    for (const InteriorVolume& interior : interiors) {
+        if (interior.sector != map::SectorCoordinate{sector.i, sector.j} || !interior.probe)
+            continue;
+        // Manual probes are never given up, but heights are rounded.
+        const auto squared = [&](const placement::Position& position) {
+            const glm::dvec3 offset(position - *interior.probe);
+            return glm::dot(offset, offset);
+        };
+        const auto probe = std::ranges::min_element(positions, {}, squared) - positions.begin();
+        sector.interiors.push_back(interior.stored);
+        sector.interiors.back().probe = static_cast<std::uint8_t>(probe);
+        vertices += interior.stored.vertices.size();
+        triangles += interior.stored.triangles.size();
+    }
+    if (sector.interiors.size() <= max_interiors && vertices <= max_interiors_vertices &&
+        triangles <= max_interior_triangles)
+        return {};
+    return tl::unexpected(
+        fmt::format("sector ({}, {}) has {} interiors with {} vertices and {} triangles, over the limits of "
+                    "{}, {} and {}",
+                    sector.i,
+                    sector.j,
+                    sector.interiors.size(),
+                    vertices,
+                    triangles,
+                    max_interiors,
+                    max_interiors_vertices,
+                    max_interior_triangles));
+}
+
 }  // namespace drtv::bake

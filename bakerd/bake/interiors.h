@@ -10,6 +10,7 @@
 #include <drtv/sector.h>
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include <tl/expected.hpp>
@@ -31,5 +32,11 @@ struct InteriorVolume {
 [[nodiscard]] tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
                                                                       const map::Volume& volume,
                                                                       const placement::ClosedVolume& closed);
+
+// Puts those whose probe stands in the sector into it; `positions` are those of its probes. Fails with a
+// sentence when they are too many for one file.
+[[nodiscard]] tl::expected<void, std::string> store_interiors(std::span<const InteriorVolume> interiors,
+                                                              std::span<const placement::Position> positions,
+                                                              Sector& sector);
 
 }  // namespace drtv::bake

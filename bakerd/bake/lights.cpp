@@ -13,10 +13,6 @@
 namespace drtv::bake {
 namespace {
 
-float brightest(const glm::vec3& colour) {
-    return std::max({colour.x, colour.y, colour.z});
-}
-
 float luminance(const glm::vec3& colour) {
     return colour.x + colour.y + colour.z;
 }

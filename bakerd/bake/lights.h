@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -17,6 +18,11 @@ namespace drtv::bake {
 // glTF's units are photometric. One watt counts as this many lumens (the peak of the eye's efficacy, as
 // Blender's exporter has it): candela become W/sr, lux W/m2, nits W/(sr m2), divided by it.
 inline constexpr float lumens_per_watt = 683;
+
+// Its largest channel.
+[[nodiscard]] inline float brightest(const glm::vec3& colour) {
+    return std::max({colour.x, colour.y, colour.z});
+}
 
 // Nearer to a point light than this, its inverse square stays as it is: it stands in no surface.
 inline constexpr float least_light_distance_m = 0.01f;

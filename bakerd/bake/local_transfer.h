@@ -2,7 +2,7 @@
 // white point light at each source brings to each probe.
 #pragma once
 
-#include "bakerd/bake/footprint_recorder.h"
+#include "bakerd/bake/ray_watch.h"
 #include "bakerd/bake/sampling.h"
 #include "bakerd/trace/scene.h"
 
@@ -42,12 +42,13 @@ struct LocalLight {
 
 // Positions in units of 2^-10 m; samples.count() paths are traced from each. The first `receiver_count`
 // sources are the receivers. A pure function of the triangles within reach of them and of the arguments. Runs
-// on the calling thread's TBB arena; the same numbers on any threads.
+// on the calling thread's TBB arena; the same numbers on any threads. Every segment is told of with the whole
+// range as its shares.
 [[nodiscard]] LocalLight integrate_local(const trace::Scene& scene,
                                          std::span<const glm::ivec3> sources,
                                          std::size_t receiver_count,
                                          const SampleTable& samples,
                                          const LocalSettings& settings,
-                                         FootprintRecorders* recorders = nullptr);
+                                         const WatchOfThread& watch = {});
 
 }  // namespace drtv::bake

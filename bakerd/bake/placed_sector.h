@@ -2,7 +2,6 @@
 // whose probes are sources of its local transfer.
 #pragma once
 
-#include "bakerd/bake/footprint.h"
 #include "bakerd/bake/settings.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/trace/scene.h"
@@ -18,6 +17,14 @@
 #include <tl/expected.hpp>
 
 namespace drtv::bake {
+
+// A point of which placement asked whether it stands in a solid.
+struct SolidTest {
+    placement::Position position;
+    std::uint8_t to_flip = 0;  // rays that would have to end otherwise for the answer to change
+
+    bool operator==(const SolidTest&) const = default;
+};
 
 struct PlacedSector {
     Sector sector;  // coordinate, positions and kinds; all else is still empty

@@ -59,6 +59,11 @@ class SampleTable {
     return static_cast<float>(word >> 8) * 0x1p-24f;
 }
 
+// In [0, 1]: rounded to the nearest, so that 1 itself comes up once in 2^25 words.
+[[nodiscard]] inline float rounded_unit_float(std::uint32_t word) {
+    return static_cast<float>(word) * 0x1p-32f;
+}
+
 // Two numbers of a point from a dimension on, shifted.
 [[nodiscard]] inline glm::vec2 shifted(std::span<const std::uint32_t> point,
                                        const std::array<std::uint32_t, max_sample_dimensions>& shift,

@@ -2,54 +2,58 @@
 // the format version; the same bytes on any number of threads.
 #pragma once
 
-#include "bakerd/bake/assessment.h"
-#include "bakerd/bake/footprint.h"
+#include "bakerd/bake/placed_sector.h"
+#include "bakerd/bake/probe_encoding.h"
+#include "bakerd/bake/ray_watch.h"
 #include "bakerd/bake/settings.h"
 #include "bakerd/bake/world.h"
 
 #include <drtv/sector.h>
 
-#include <cstdint>
+#include <map>
 #include <optional>
-#include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <tl/expected.hpp>
 
 namespace drtv::bake {
 
+struct ByPlace {
+    bool operator()(const placement::Position& a, const placement::Position& b) const {
+        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+    }
+};
+
+// What of the sector is known before it is baked: it is stored as it is.
+struct Given {
+    std::optional<PlacedSector> placement;
+    std::optional<Grid> grid;                                   // REQUIRES: the placement is given
+    std::map<placement::Position, BakedProbe, ByPlace> probes;  // those that stand elsewhere are not used
+};
+
 struct BakedSector {
     Sector sector;
     std::vector<std::string> warnings;  // one sentence each, for the artist
-    Footprint footprint;
-    std::size_t probes_taken_over = 0;
-};
-
-// An earlier bake of the sector with the same settings, of another map, and what of it holds for the world at
-// hand.
-struct EarlierBake {
-    Sector sector;
-    Footprint footprint;
-    Assessment assessment;
+    // What the file does not say of its probes, in their order.
+    std::vector<placement::Position> positions;
+    std::vector<ProbeCounts> counts;
+    // On which its placement rests, and with local transfer its neighbours'; by place, one of each.
+    std::vector<SolidTest> solid_tests;
 };
 
 // Runs on the calling thread's TBB arena. Fails with a sentence (too many manual probes; too high a sector).
-//
-// Probes of an earlier bake that stand where they stood, and whose bound is within settings.tolerance, are
-// taken over (REQUIRES: it was assessed with that tolerance); with bounds of 0 the result is the same, byte
-// for byte, as without it.
+// `watch` is told of every ray of the probes that are not given, on the thread that traces it; not of
+// placement's.
 [[nodiscard]] tl::expected<BakedSector, std::string> bake_sector(World& world,
                                                                  map::SectorCoordinate coordinate,
                                                                  const Settings& settings,
-                                                                 const EarlierBake* earlier = nullptr);
+                                                                 const Given& given = {},
+                                                                 const WatchOfThread& watch = {});
 
-// The sector file, checked by the validator; a sentence with the first error when it fails. What the
-// validator warns of is added to `warnings`.
-[[nodiscard]] tl::expected<std::vector<std::uint8_t>, std::string> encode_sector(
-    const Sector& sector, std::vector<std::string>& warnings);
-
-// The sector of a file; nothing when it cannot be read.
-[[nodiscard]] std::optional<Sector> decode_sector(std::span<const std::uint8_t> bytes);
+// Whether so many of its rays ended at the back of a one-sided surface that something stands inside out or
+// open.
+[[nodiscard]] bool has_many_back_hits(const Statistics& statistics);
 
 }  // namespace drtv::bake

@@ -1,6 +1,5 @@
 #include "bakerd/bake/settings.h"
 
-#include "bakerd/bake/footprint.h"
 #include "bakerd/trace/device.h"
 
 #include <fmt/format.h>
@@ -99,14 +98,6 @@ map::Digest settings_key(const Settings& settings) {
         hasher.add(settings.local_bounces);
         hasher.add(settings.local_rays);
     }
-    return hasher.finish();
-}
-
-map::Digest results_key(const Settings& settings) {
-    map::Hasher hasher;
-    hasher.add_sized(std::string_view("drtv results"));
-    hasher.add(settings_key(settings));
-    hasher.add(footprint_version);
     return hasher.finish();
 }
 

@@ -45,8 +45,4 @@ struct Settings {
 // the map and the sector.
 [[nodiscard]] map::Digest settings_key(const Settings& settings);
 
-// Results of a sector with the same key may stand for each other, where their records say so: settings_key
-// and the version of the records.
-[[nodiscard]] map::Digest results_key(const Settings& settings);
-
 }  // namespace drtv::bake

@@ -1,5 +1,6 @@
 #include "bakerd/bake/world.h"
 
+#include "bakerd/bake/integrate.h"
 #include "bakerd/bake/tile.h"
 
 #include <fmt/format.h>
@@ -103,6 +104,11 @@ std::shared_ptr<const Placed> World::placed(map::SectorCoordinate sector,
     return placements_.get({sector, settings.reach_m, settings.min_distance_m}, [&] {
         return place_sector({manual_probes_, no_probes_}, scene, sector, settings);
     });
+}
+
+Surroundings World::surroundings(map::SectorCoordinate sector, const Settings& settings) {
+    return {scene_for(sector, scene_distance_m(settings)),
+            samples(settings.rays, sample_dimensions(settings.bounces, !lights_.empty()))};
 }
 
 std::shared_ptr<const SampleTable> World::samples(std::uint32_t count, std::uint32_t dimensions) {

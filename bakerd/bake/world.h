@@ -22,6 +22,12 @@ namespace drtv::bake {
 
 using Placed = tl::expected<PlacedSector, std::string>;
 
+// What a sector is baked in.
+struct Surroundings {
+    std::shared_ptr<const trace::Scene> scene;   // holds all within scene_distance_m of the sector
+    std::shared_ptr<const SampleTable> samples;  // of the paths of its probes
+};
+
 class World {
   public:
     // With a shelf, the geometry of meshes that a map before had is used again. Fails with a sentence when
@@ -47,6 +53,8 @@ class World {
     // within.
     [[nodiscard]] std::shared_ptr<const trace::Scene> scene_for(map::SectorCoordinate sector,
                                                                 float distance_m);
+
+    [[nodiscard]] Surroundings surroundings(map::SectorCoordinate sector, const Settings& settings);
 
     // The probes of a sector, found once for itself and for all its neighbours. REQUIRES: the scene holds all
     // within scene_distance_m of a sector or of its neighbour.

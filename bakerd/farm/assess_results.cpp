@@ -1,6 +1,8 @@
 #include "bakerd/farm/assess_results.h"
 
-#include "bakerd/bake/assessment.h"
+#include "bakerd/bake/sector_file.h"
+#include "bakerd/reuse/assessment.h"
+#include "bakerd/reuse/footprint_record.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -15,12 +17,12 @@ namespace {
 constexpr std::size_t most_changes = 1000, most_warnings = 20;
 
 // Of a sector; nothing, with a sentence, when it cannot be read.
-std::optional<bake::Footprint> read_footprint(const Digest& digest,
-                                              const map::SectorCoordinate& sector,
-                                              BlobStore& store,
-                                              std::string& problem) {
+std::optional<reuse::Footprint> read_footprint(const Digest& digest,
+                                               const map::SectorCoordinate& sector,
+                                               BlobStore& store,
+                                               std::string& problem) {
     const auto bytes = store.get(digest);
-    auto footprint = bytes ? bake::decode_footprint(*bytes) : std::nullopt;
+    auto footprint = bytes ? reuse::decode_footprint(*bytes) : std::nullopt;
     if (footprint && footprint->sector == sector)
         return footprint;
     problem = fmt::format("sector ({}, {}): the record of an earlier result cannot be used: {}",
@@ -65,14 +67,15 @@ class Assessing {
                 continue;
             }
             const float tolerance = request_.settings.tolerance;
-            const bake::Assessment assessment =
-                bake::assess(*footprint, request_.settings, *changes, tolerance, world_);
-            if (assessment.verdict == bake::Verdict::hit)
+            const reuse::Assessment assessment =
+                reuse::assess(*footprint, request_.settings, *changes, tolerance, world_);
+            if (assessment.verdict == reuse::Verdict::hit)
                 return {assessment.verdict, c, 0, 0, ""};
-            const bool near = assessment.verdict == bake::Verdict::near_hit;
-            const float share = near ? 0 : bake::share_to_bake(assessment, tolerance);
+            const bool near = assessment.verdict == reuse::Verdict::near_hit;
+            const float share = near ? 0 : reuse::share_to_bake(assessment);
             if (first || share < best.share || (near && assessment.bound < best.bound))
-                best = {assessment.verdict, c, assessment.bound, share, bake::describe(assessment, *changes)};
+                best = {
+                    assessment.verdict, c, assessment.bound, share, reuse::describe(assessment, *changes)};
             first = false;
         }
         return best;
@@ -82,7 +85,7 @@ class Assessing {
     void tell_changes(AssessAnswer& answer) {
         std::set<Digest> inventories;
         for (std::size_t n = 0; n < answer.sectors.size(); ++n) {
-            if (answer.sectors[n].verdict != bake::Verdict::hit && !request_.sectors[n].candidates.empty())
+            if (answer.sectors[n].verdict != reuse::Verdict::hit && !request_.sectors[n].candidates.empty())
                 inventories.insert(request_.sectors[n].candidates[answer.sectors[n].candidate].inventory);
         }
         std::set<std::pair<std::string, std::array<float, 6>>> told;
@@ -91,7 +94,7 @@ class Assessing {
             const auto changes = changes_.map(inventory, problem);
             if (!changes)
                 continue;
-            for (const bake::Change& change : *changes) {
+            for (const reuse::Change& change : *changes) {
                 map::Bounds bounds;
                 for (const auto* item : {&change.before, &change.after}) {
                     if (!*item || (*item)->bounds.empty())
@@ -101,7 +104,7 @@ class Assessing {
                 }
                 if (bounds.empty() || answer.changes.size() >= most_changes)
                     continue;
-                const std::string what = bake::describe(change);
+                const std::string what = reuse::describe(change);
                 if (told.insert({what,
                                  {bounds.low.x,
                                   bounds.low.y,
@@ -131,16 +134,16 @@ class Assessing {
 
 }  // namespace
 
-std::shared_ptr<const std::vector<bake::Change>> ChangesSince::map(const Digest& inventory,
-                                                                   std::string& problem) {
+std::shared_ptr<const std::vector<reuse::Change>> ChangesSince::map(const Digest& inventory,
+                                                                    std::string& problem) {
     const std::lock_guard lock(mutex_);
     if (const auto found = known_.find(inventory); found != known_.end())
         return found->second;
     const auto bytes = store_.get(inventory);
-    const auto before = bytes ? bake::decode_inventory(*bytes) : std::nullopt;
+    const auto before = bytes ? reuse::decode_inventory(*bytes) : std::nullopt;
     if (before)
-        return known_[inventory] = std::make_shared<const std::vector<bake::Change>>(
-                   bake::changes_between(*before, *inventory_));
+        return known_[inventory] = std::make_shared<const std::vector<reuse::Change>>(
+                   reuse::changes_between(*before, *inventory_));
     problem = fmt::format("the record of an earlier map cannot be used: {}",
                           bytes ? "it is not one" : bytes.error().message);
     return nullptr;
@@ -153,10 +156,10 @@ AssessAnswer assess_results(const AssessRequest& request,
     return Assessing(request, world, changes, store).run();
 }
 
-std::optional<bake::EarlierBake> read_earlier(const BakeRequest& request,
-                                              bake::World& world,
-                                              ChangesSince& changes,
-                                              BlobStore& store) {
+std::optional<reuse::EarlierBake> read_earlier(const BakeRequest& request,
+                                               bake::World& world,
+                                               ChangesSince& changes,
+                                               BlobStore& store) {
     if (!request.earlier)
         return std::nullopt;
     std::string problem;
@@ -166,9 +169,9 @@ std::optional<bake::EarlierBake> read_earlier(const BakeRequest& request,
     auto sector = file ? bake::decode_sector(*file) : std::nullopt;
     if (!since || !footprint || !sector)
         return std::nullopt;
-    bake::EarlierBake earlier{std::move(*sector), std::move(*footprint), {}};
+    reuse::EarlierBake earlier{std::move(*sector), std::move(*footprint), {}};
     earlier.assessment =
-        bake::assess(earlier.footprint, request.settings, *since, request.settings.tolerance, world);
+        reuse::assess(earlier.footprint, request.settings, *since, request.settings.tolerance, world);
     return earlier;
 }
 

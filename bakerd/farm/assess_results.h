@@ -1,11 +1,11 @@
 // What the worker makes of older results: reads their records from the store, and asks bake.
 #pragma once
 
-#include "bakerd/bake/inventory.h"
-#include "bakerd/bake/sector_bake.h"
 #include "bakerd/bake/world.h"
 #include "bakerd/farm/blob_store.h"
 #include "bakerd/farm/worker_protocol.h"
+#include "bakerd/reuse/inventory.h"
+#include "bakerd/reuse/rebake.h"
 
 #include <map>
 #include <memory>
@@ -18,18 +18,18 @@ namespace drtv::farm {
 // What differs between a map and those before it, each compared once. Thread-safe.
 class ChangesSince {
   public:
-    ChangesSince(std::shared_ptr<const bake::Inventory> inventory, BlobStore& store)
+    ChangesSince(std::shared_ptr<const reuse::Inventory> inventory, BlobStore& store)
         : inventory_(std::move(inventory)), store_(store) {}
 
     // Since the map with that inventory; nothing when it cannot be read, with a sentence in `problem`.
-    [[nodiscard]] std::shared_ptr<const std::vector<bake::Change>> map(const Digest& inventory,
-                                                                       std::string& problem);
+    [[nodiscard]] std::shared_ptr<const std::vector<reuse::Change>> map(const Digest& inventory,
+                                                                        std::string& problem);
 
   private:
-    const std::shared_ptr<const bake::Inventory> inventory_;
+    const std::shared_ptr<const reuse::Inventory> inventory_;
     BlobStore& store_;
     std::mutex mutex_;
-    std::map<Digest, std::shared_ptr<const std::vector<bake::Change>>> known_;  // guarded by mutex_
+    std::map<Digest, std::shared_ptr<const std::vector<reuse::Change>>> known_;  // guarded by mutex_
 };
 
 // `world` and `changes` are of the request's map. Of each sector the first candidate that hits is taken, else
@@ -42,9 +42,9 @@ class ChangesSince {
 
 // The earlier result that a request names, held against `world`; nothing when it or its records are lost or
 // damaged. REQUIRES: a FloatMode on this thread.
-[[nodiscard]] std::optional<bake::EarlierBake> read_earlier(const BakeRequest& request,
-                                                            bake::World& world,
-                                                            ChangesSince& changes,
-                                                            BlobStore& store);
+[[nodiscard]] std::optional<reuse::EarlierBake> read_earlier(const BakeRequest& request,
+                                                             bake::World& world,
+                                                             ChangesSince& changes,
+                                                             BlobStore& store);
 
 }  // namespace drtv::farm

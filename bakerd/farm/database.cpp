@@ -26,7 +26,7 @@ CREATE TABLE task (
 CREATE TABLE job_task (job INTEGER NOT NULL, task INTEGER NOT NULL, PRIMARY KEY (job, task)) WITHOUT ROWID;
 )sql";
 
-// settings_key is bake::results_key.
+// settings_key is reuse::results_key.
 constexpr const char* result_schema = R"sql(
 CREATE TABLE result (
   id INTEGER PRIMARY KEY, i INTEGER NOT NULL, j INTEGER NOT NULL, settings_key TEXT NOT NULL, file TEXT NOT NULL, size INTEGER NOT NULL,

@@ -43,7 +43,7 @@ struct TaskRow {
 struct ResultRow {
     std::int64_t id = 0;
     map::SectorCoordinate sector;
-    Digest results_key;  // bake::results_key
+    Digest results_key;  // reuse::results_key
     BakeAnswer result;
 };
 

@@ -1,5 +1,7 @@
 #include "bakerd/farm/farm.h"
 
+#include "bakerd/reuse/footprint.h"
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -237,11 +239,11 @@ Result<PlanView> Farm::plan_job(const JobRequest& request) {
         return tl::unexpected(planned.error());
     PlanView view{std::move(planned->plan), 0};
     for (const PlannedSector& sector : view.plan.sectors) {
-        if (sector.verdict == bake::Verdict::rebake)
+        if (sector.verdict == reuse::Verdict::rebake)
             view.seconds += sector.seconds;
     }
     view.seconds /= static_cast<double>(
-        std::clamp<std::int64_t>(view.plan.count(bake::Verdict::rebake), 1, options_.threads));
+        std::clamp<std::int64_t>(view.plan.count(reuse::Verdict::rebake), 1, options_.threads));
     return view;
 }
 
@@ -451,7 +453,7 @@ void Farm::task_finished(std::int64_t id, int failed_attempts, const Outcome& ou
 // Without it the file is still there for its job; only no later one finds it.
 void Farm::keep_result(const TaskRow& task) {
     const BakeAnswer& baked = task.result;
-    ResultRow row{0, task.sector, bake::results_key(task.settings), baked};
+    ResultRow row{0, task.sector, reuse::results_key(task.settings), baked};
     const auto kept = database_->transaction([&]() -> Result<void> {
         if (auto inserted = database_->insert_result(row); !inserted)
             return inserted;

@@ -1,5 +1,7 @@
 #include "bakerd/farm/plan.h"
 
+#include "bakerd/reuse/footprint.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +29,7 @@ float distance_m(const map::SectorCoordinate& sector, const map::Bounds& bounds)
 }
 
 void reuse(PlannedSector& planned, const BakeAnswer& result, float bound) {
-    planned.verdict = bound > 0 ? bake::Verdict::near_hit : bake::Verdict::hit;
+    planned.verdict = bound > 0 ? reuse::Verdict::near_hit : reuse::Verdict::hit;
     planned.reused = result;
     planned.bound = bound;
     planned.candidates.clear();
@@ -35,7 +37,7 @@ void reuse(PlannedSector& planned, const BakeAnswer& result, float bound) {
 
 }  // namespace
 
-std::int64_t Plan::count(bake::Verdict verdict) const {
+std::int64_t Plan::count(reuse::Verdict verdict) const {
     return std::ranges::count(sectors, verdict, &PlannedSector::verdict);
 }
 
@@ -43,7 +45,7 @@ Digest task_key(const Digest& content, const bake::Settings& settings, map::Sect
     map::Hasher hasher;
     hasher.add_sized(std::string_view("drtv task"));
     hasher.add(content);
-    hasher.add(bake::results_key(settings));
+    hasher.add(reuse::results_key(settings));
     hasher.add(sector.i);
     hasher.add(sector.j);
     if (settings.tolerance > 0)
@@ -58,7 +60,7 @@ Result<Plan> look_up(Database& database,
                      const std::vector<map::SectorCoordinate>& sectors) {
     bake::Settings exact = settings;
     exact.tolerance = 0;
-    const Digest results_key = bake::results_key(settings);
+    const Digest results_key = reuse::results_key(settings);
     const auto mean_seconds = database.mean_seconds(results_key);
     if (!mean_seconds)
         return tl::unexpected(mean_seconds.error());
@@ -128,7 +130,7 @@ void apply(const AssessAnswer& answer, Plan& plan) {
         if (assessed.candidate >= planned.candidates.size())
             continue;
         const BakeAnswer& candidate = planned.candidates[assessed.candidate].result;
-        if (assessed.verdict != bake::Verdict::rebake) {
+        if (assessed.verdict != reuse::Verdict::rebake) {
             reuse(planned, BakeAnswer(candidate), assessed.bound);
         } else if (assessed.share < 1) {
             planned.earlier = candidate;
@@ -156,7 +158,7 @@ void drop_damaged(BlobStore& blobs, Plan& plan) {
         const auto bytes = blobs.get(planned.reused->result);
         if (bytes)
             continue;
-        planned.verdict = bake::Verdict::rebake;
+        planned.verdict = reuse::Verdict::rebake;
         planned.reused.reset();
         planned.bound = 0;
         planned.reason = lost;

@@ -14,7 +14,7 @@ namespace drtv::farm {
 
 struct PlannedSector {
     map::SectorCoordinate sector;
-    bake::Verdict verdict = bake::Verdict::rebake;
+    reuse::Verdict verdict = reuse::Verdict::rebake;
     std::optional<BakeAnswer> reused;   // unless rebake
     float bound = 0;                    // of a near hit
     std::string reason;                 // one sentence; empty of a hit
@@ -29,7 +29,7 @@ struct Plan {
     std::vector<AssessAnswer::Change> changes;
     std::vector<std::string> warnings;
 
-    [[nodiscard]] std::int64_t count(bake::Verdict verdict) const;
+    [[nodiscard]] std::int64_t count(reuse::Verdict verdict) const;
 };
 
 // What a sector's file depends on, as far as is known before it is baked.

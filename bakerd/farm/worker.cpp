@@ -1,12 +1,14 @@
 #include "bakerd/farm/worker.h"
 
-#include "bakerd/bake/inventory.h"
-#include "bakerd/bake/sector_bake.h"
+#include "bakerd/bake/sector_file.h"
 #include "bakerd/farm/assess_results.h"
 #include "bakerd/farm/blob_store.h"
 #include "bakerd/farm/manifest.h"
 #include "bakerd/farm/worker_protocol.h"
 #include "bakerd/map/import.h"
+#include "bakerd/reuse/footprint_record.h"
+#include "bakerd/reuse/inventory.h"
+#include "bakerd/reuse/rebake.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -34,7 +36,7 @@ constexpr std::size_t kept_maps = 2;
 struct LoadedMap {
     std::shared_ptr<bake::World> world;
     InspectAnswer summary;
-    std::shared_ptr<const bake::Inventory> inventory;
+    std::shared_ptr<const reuse::Inventory> inventory;
     std::shared_ptr<ChangesSince> changes;
 };
 
@@ -78,38 +80,39 @@ class Worker {
             return loaded.error();
         const auto start = std::chrono::steady_clock::now();
         const trace::FloatMode float_mode;
-        const std::optional<bake::EarlierBake> earlier =
+        const std::optional<reuse::EarlierBake> earlier =
             read_earlier(request, *loaded->world, *loaded->changes, *store_);
-        auto baked = bake::bake_sector(
+        auto rebake = reuse::bake_and_record(
             *loaded->world, request.sector, request.settings, earlier ? &*earlier : nullptr);
-        if (!baked)
-            return FailureAnswer{baked.error(), false};
-        const auto bytes = bake::encode_sector(baked->sector, baked->warnings);
+        if (!rebake)
+            return FailureAnswer{rebake.error(), false};
+        bake::BakedSector& baked = rebake->baked;
+        const auto bytes = bake::encode_sector(baked.sector, baked.warnings);
         if (!bytes)
             return FailureAnswer{bytes.error(), false};
-        const std::vector<std::uint8_t> footprint = bake::encode_footprint(baked->footprint);
+        const std::vector<std::uint8_t> footprint = reuse::encode_footprint(rebake->footprint);
         const double seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         // Lost when nothing rested on it any more.
         if (!store_->has(loaded->summary.inventory) &&
-            !store_->put(bake::encode_inventory(*loaded->inventory)))
+            !store_->put(reuse::encode_inventory(*loaded->inventory)))
             return FailureAnswer{"the map's record cannot be stored", true};
         // The footprint first: a result without one could never be found again.
         const auto footprint_digest = store_->put(footprint),
                    digest = footprint_digest ? store_->put(*bytes) : footprint_digest;
         if (!digest)
             return FailureAnswer{digest.error().message, true};
-        const Sector& sector = baked->sector;
+        const Sector& sector = baked.sector;
         return BakeAnswer{*digest,
                           static_cast<std::int64_t>(bytes->size()),
                           static_cast<std::int64_t>(sector.probes.size()),
                           static_cast<std::int64_t>(sector.statistics.rays),
-                          baked->warnings,
+                          baked.warnings,
                           *footprint_digest,
                           loaded->summary.inventory,
                           static_cast<std::int64_t>(footprint.size()),
                           seconds,
-                          baked->footprint.bound()};
+                          rebake->footprint.bound()};
     }
 
     What perform(const AssessRequest& request) {
@@ -172,8 +175,8 @@ class Worker {
         auto world = bake::World::open(device_, map, shelf_);
         if (!world)
             return tl::unexpected(FailureAnswer{world.error(), false});
-        auto inventory = std::make_shared<const bake::Inventory>(bake::take_inventory(**world));
-        const auto inventory_digest = store_->put(bake::encode_inventory(*inventory));
+        auto inventory = std::make_shared<const reuse::Inventory>(reuse::take_inventory(**world));
+        const auto inventory_digest = store_->put(reuse::encode_inventory(*inventory));
         if (!inventory_digest)
             return tl::unexpected(FailureAnswer{inventory_digest.error().message, true});
         LoadedMap loaded{*world,

@@ -120,9 +120,9 @@ AssessAnswer assess_answer_from(const Json& json) {
     AssessAnswer answer;
     for (const Json& sector : json.at("verdicts")) {
         const auto verdict = integer<std::uint8_t>(sector.at(0));
-        if (verdict > static_cast<std::uint8_t>(bake::Verdict::rebake))
+        if (verdict > static_cast<std::uint8_t>(reuse::Verdict::rebake))
             throw Json::other_error::create(504, "unknown verdict", nullptr);
-        answer.sectors.push_back({static_cast<bake::Verdict>(verdict),
+        answer.sectors.push_back({static_cast<reuse::Verdict>(verdict),
                                   integer<std::size_t>(sector.at(1)),
                                   sector.at(2).get<float>(),
                                   sector.at(3).get<float>(),

@@ -2,10 +2,11 @@
 // answers on its standard output, matched by id and in any order.
 #pragma once
 
-#include "bakerd/bake/assessment.h"
 #include "bakerd/bake/settings.h"
 #include "bakerd/map/digest.h"
 #include "bakerd/map/ground.h"
+#include "bakerd/map/map.h"
+#include "bakerd/reuse/verdict.h"
 
 #include <cstdint>
 #include <optional>
@@ -53,7 +54,7 @@ using WorkerRequest = std::variant<InspectRequest, BakeRequest, AssessRequest>;
 
 struct InspectAnswer {
     map::Digest content;
-    map::Digest inventory;                       // a blob (bake/inventory.h)
+    map::Digest inventory;                       // a blob (reuse/inventory.h)
     std::vector<map::SectorCoordinate> sectors;  // with ground, by (j, i)
     std::int64_t object_count = 0, triangle_count = 0;
     std::vector<std::string> warnings;
@@ -77,7 +78,7 @@ struct BakeAnswer {
 
 struct AssessAnswer {
     struct Sector {
-        bake::Verdict verdict = bake::Verdict::rebake;
+        reuse::Verdict verdict = reuse::Verdict::rebake;
         std::size_t candidate =
             0;  // of a rebake the one with the most to take over, when its share is below 1
         float bound = 0;

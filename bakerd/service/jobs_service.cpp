@@ -61,13 +61,13 @@ void fill(const farm::JobView& view, v1::Job& out) {
         out.add_warnings(warning);
 }
 
-v1::PlannedSector::Verdict to_proto(bake::Verdict verdict) {
+v1::PlannedSector::Verdict to_proto(reuse::Verdict verdict) {
     switch (verdict) {
-        case bake::Verdict::hit:
+        case reuse::Verdict::hit:
             return v1::PlannedSector::HIT;
-        case bake::Verdict::near_hit:
+        case reuse::Verdict::near_hit:
             return v1::PlannedSector::NEAR_HIT;
-        case bake::Verdict::rebake:
+        case reuse::Verdict::rebake:
             return v1::PlannedSector::REBAKE;
     }
     return v1::PlannedSector::VERDICT_UNSPECIFIED;
@@ -122,7 +122,7 @@ grpc::Status JobsService::PlanJob(grpc::ServerContext*,
         sector.set_verdict(to_proto(planned.verdict));
         sector.set_bound(static_cast<double>(planned.bound));
         sector.set_reason(planned.reason);
-        if (planned.verdict == bake::Verdict::rebake)
+        if (planned.verdict == reuse::Verdict::rebake)
             sector.set_share(static_cast<double>(planned.share));
     }
     for (const auto& [what, bounds] : view->plan.changes) {

@@ -1,6 +1,7 @@
 // Interiors: which probe, which file, and that the mesh stays closed in 16 bits.
 #include "bakerd/bake/interiors.h"
 #include "bakerd/bake/sector_bake.h"
+#include "bakerd/bake/sector_file.h"
 #include "tests/bake/worlds.h"
 
 #include <drtv/read.h>

@@ -1,6 +1,7 @@
 // Local transfer: closed forms, reciprocity, and what it must not do.
 #include "bakerd/bake/local_transfer.h"
 #include "bakerd/bake/sector_bake.h"
+#include "bakerd/bake/sector_file.h"
 #include "tests/bake/worlds.h"
 
 #include <drtv/read.h>

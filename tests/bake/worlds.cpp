@@ -1,6 +1,6 @@
 #include "tests/bake/worlds.h"
 
-#include "bakerd/bake/sector_bake.h"
+#include "bakerd/bake/sector_file.h"
 
 #include <gtest/gtest.h>
 

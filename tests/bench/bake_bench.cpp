@@ -4,6 +4,9 @@
 // pairs.
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/sector_bake.h"
+#include "bakerd/bake/sector_file.h"
+#include "bakerd/reuse/footprint_recorder.h"
+#include "tests/bake/ray_log.h"
 #include "tests/bench/bench_world.h"
 #include "tests/bench/raw_embree.h"
 
@@ -25,7 +28,7 @@ struct Setup {
     std::shared_ptr<const trace::Scene> scene;
     std::vector<glm::ivec3> probes;
     std::unique_ptr<bake::SampleTable> samples;
-    bake::RayLog rays;
+    test::RayLog rays;
     [[nodiscard]] std::size_t ray_count() const { return rays.paths.size() + rays.shadows.size(); }
     std::unique_ptr<RawEmbree> embree;
     map::SectorCoordinate sector;  // of the probes
@@ -34,15 +37,13 @@ struct Setup {
 
 std::optional<Setup> setup;
 
-std::uint64_t integrate_all(bake::RayLog* log = nullptr, bake::FootprintRecorder* footprint = nullptr) {
+std::uint64_t integrate_all(bake::RayWatch* watch = nullptr) {
     const trace::FloatMode float_mode;
     std::uint64_t rays = 0;
     for (const glm::ivec3& probe : setup->probes) {
-        if (footprint != nullptr)
-            footprint->begin(bake::quarter_of(setup->sector, probe));
         const bake::ProbeLight light =
             bake::integrate_probe(*setup->scene, setup->world->lights(), probe, *setup->samples,
-                                  {setup->settings.bounces, setup->settings.reach_m, 0}, {footprint, log});
+                                  {setup->settings.bounces, setup->settings.reach_m, 0}, watch);
         rays += light.rays + light.shadow_rays;
     }
     return rays;
@@ -114,15 +115,15 @@ BENCHMARK(bake_over_embree)->Unit(benchmark::kMillisecond)->Iterations(15);
 void footprint_over_none(benchmark::State& state) {
     const trace::FloatMode float_mode;
     std::vector<double> ratios;
-    const bake::FootprintGrid grid = bake::footprint_grid(
+    const reuse::FootprintGrid grid = reuse::footprint_grid(
         setup->sector, setup->settings.reach_m, setup->scene->bounds().low.z, setup->scene->bounds().high.z);
     for (auto _ : state) {
         const double start = seconds();
         benchmark::DoNotOptimize(integrate_all());
         const double between = seconds();
-        bake::FootprintRecorders recorders(grid);
-        benchmark::DoNotOptimize(integrate_all(nullptr, &recorders.of_this_thread()));
-        bake::Footprint footprint;
+        reuse::FootprintRecorders recorders(setup->sector, grid);
+        benchmark::DoNotOptimize(integrate_all(&recorders.of_this_thread()));
+        reuse::Footprint footprint;
         recorders.store(footprint);
         ratios.push_back((seconds() - between) / (between - start));
     }

@@ -5,7 +5,9 @@
 //   cpu_bytes bake OUT MAP.glb SECTORS    so many sectors of a map, spread over it
 // Sectors are baked with draft and with pc, both with few rays; the bytes of file and record follow each
 // other.
-#include "bakerd/bake/sector_bake.h"
+#include "bakerd/bake/sector_file.h"
+#include "bakerd/reuse/footprint_record.h"
+#include "bakerd/reuse/rebake.h"
 #include "tests/bake/worlds.h"
 #include "tests/bench/bench_world.h"
 #include "tests/trace/scenes.h"
@@ -190,10 +192,10 @@ std::vector<std::uint8_t> baked_bytes(bake::World& world, const std::vector<map:
     std::vector<std::vector<std::uint8_t>> parts(sectors.size());
     tbb::parallel_for(std::size_t{0}, sectors.size(), [&](std::size_t n) {
         for (const bake::Settings& settings : settings_for(small)) {
-            auto baked = bake::bake_sector(world, sectors[n], settings).value();
+            const auto rebake = reuse::bake_and_record(world, sectors[n], settings).value();
             std::vector<std::string> warnings;
-            const std::vector<std::uint8_t> file = bake::encode_sector(baked.sector, warnings).value(),
-                                            record = bake::encode_footprint(baked.footprint);
+            const std::vector<std::uint8_t> file = bake::encode_sector(rebake.baked.sector, warnings).value(),
+                                            record = reuse::encode_footprint(rebake.footprint);
             parts[n].insert(parts[n].end(), file.begin(), file.end());
             parts[n].insert(parts[n].end(), record.begin(), record.end());
         }

@@ -23,7 +23,7 @@ import sector_file
 from farm_fixture import Farm, make_island, read_folder
 
 TOLERANCE = 1 / 512
-# Shares of coefficients' ranges (bakerd/bake/assessment.h), and half a step of their fixed point on both sides.
+# Shares of coefficients' ranges (bakerd/reuse/assessment.h), and half a step of their fixed point on both sides.
 STATIC_RANGE = 0.25
 ROUNDING = 2.0**-13
 

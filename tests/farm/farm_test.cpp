@@ -318,16 +318,16 @@ TEST_F(FarmTest, AnotherMapFindsWhatStillHolds) {
     const std::string gltf = ground_gltf(128);
     expect_succeeded(wait(submit(quick(create(gltf)->id)).row.id), 4);
     const PlanView same = farm->plan_job(quick(create(gltf + " ")->id)).value();
-    EXPECT_EQ(same.plan.count(bake::Verdict::hit), 4);
+    EXPECT_EQ(same.plan.count(reuse::Verdict::hit), 4);
     JobRequest night = quick(create(gltf)->id);
     night.overrides["tolerance"] = "0";
     const PlanView exact = farm->plan_job(night).value();
-    EXPECT_EQ(exact.plan.count(bake::Verdict::hit), 4);
+    EXPECT_EQ(exact.plan.count(reuse::Verdict::hit), 4);
     for (const PlannedSector& planned : exact.plan.sectors)
         EXPECT_EQ(planned.reason, "") << "there is none of a hit";
     const Digest raised = create(ground_gltf(128, 1))->id;
     const PlanView other = farm->plan_job(quick(raised)).value();
-    EXPECT_EQ(other.plan.count(bake::Verdict::rebake), 4);
+    EXPECT_EQ(other.plan.count(reuse::Verdict::rebake), 4);
     EXPECT_GT(other.seconds, 0);
     ASSERT_EQ(other.plan.changes.size(), 1u);
     for (const PlannedSector& planned : other.plan.sectors)

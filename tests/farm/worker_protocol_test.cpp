@@ -61,15 +61,15 @@ TEST(WorkerProtocol, AssessmentsComeBackAsTheyWere) {
     EXPECT_EQ(back.sectors[0].candidates[1].inventory, some_digest);
 
     AssessAnswer answer;
-    answer.sectors = {{bake::Verdict::near_hit, 1, 0.1f, 0, "why"},
-                      {bake::Verdict::rebake, 0, 0, 0.25f, "because"}};
+    answer.sectors = {{reuse::Verdict::near_hit, 1, 0.1f, 0, "why"},
+                      {reuse::Verdict::rebake, 0, 0, 0.25f, "because"}};
     answer.changes = {{"a tree moved", {{1, 2, 3}, {4, 5, 6.5f}}}};
     answer.warnings = {"lost"};
     const auto given = std::get<AssessAnswer>(decode_answer(encode(WorkerAnswer{9, answer})).value().what);
     ASSERT_EQ(given.sectors.size(), 2u);
     EXPECT_EQ(std::tuple(given.sectors[0].verdict, given.sectors[0].candidate, given.sectors[0].bound,
                          given.sectors[0].reason),
-              std::tuple(bake::Verdict::near_hit, 1u, 0.1f, "why"));
+              std::tuple(reuse::Verdict::near_hit, 1u, 0.1f, "why"));
     EXPECT_EQ(given.sectors[1].share, 0.25f);
     ASSERT_EQ(given.changes.size(), 1u);
     EXPECT_EQ(given.changes[0].bounds.high, glm::vec3(4, 5, 6.5f));

@@ -12,26 +12,26 @@
 
 #include <span>
 
-namespace drtv::bake {
+namespace drtv::reuse {
 
-// Of all lights within reach of the probes, over static_irradiance_range; lamps shine on the surfaces of the
-// scene, the nearest of each counts. 0 without lights. `scattered` is trace::most_scattered.
-[[nodiscard]] float static_gain(const StaticLights& lights,
+// Of all lights within reach of the probes, over bake::static_irradiance_range; lamps shine on the surfaces
+// of the scene, the nearest of each counts. 0 without lights. `scattered` is trace::most_scattered.
+[[nodiscard]] float static_gain(const bake::StaticLights& lights,
                                 float scattered,
                                 const trace::Scene& scene,
                                 std::span<const placement::Position> probes,
-                                const Settings& settings);
+                                const bake::Settings& settings);
 
 // The same of surfaces anywhere in the boxes, and of lamps alone.
-[[nodiscard]] float static_gain(const StaticLights& lights,
+[[nodiscard]] float static_gain(const bake::StaticLights& lights,
                                 float scattered,
                                 std::span<const map::Bounds> boxes,
-                                const Settings& settings);
+                                const bake::Settings& settings);
 
 // A gain that was found for surfaces of `scattered_before`, where there are brighter ones now.
 [[nodiscard]] float raised_gain(float gain,
                                 float scattered_before,
                                 float scattered_now,
-                                const Settings& settings);
+                                const bake::Settings& settings);
 
-}  // namespace drtv::bake
+}  // namespace drtv::reuse

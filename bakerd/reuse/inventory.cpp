@@ -1,6 +1,6 @@
-#include "bakerd/bake/inventory.h"
+#include "bakerd/reuse/inventory.h"
 
-#include "bakerd/bake/stored_bytes.h"
+#include "bakerd/reuse/record_bytes.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <iterator>
 #include <tuple>
 
-namespace drtv::bake {
+namespace drtv::reuse {
 namespace {
 
 constexpr std::uint64_t magic = 0x31'4E'49'56'54'52'44;  // "DRTVIN1"
@@ -31,7 +31,7 @@ ItemDigest digest_of_probe(const glm::dvec3& position) {
     return half(hasher.finish());
 }
 
-ItemDigest digest_of_interior(const InteriorVolume& interior) {
+ItemDigest digest_of_interior(const bake::InteriorVolume& interior) {
     map::Hasher hasher;
     hasher.add(*interior.probe);
     hasher.add(interior.stored.origin_units);
@@ -71,11 +71,11 @@ auto identity(const Item& item) {
 
 }  // namespace
 
-Inventory take_inventory(const World& world) {
+Inventory take_inventory(const bake::World& world) {
     Inventory inventory;
     const map::Map& map = world.map();
     std::size_t next_emissive = 0;
-    const std::span<const EmissiveObject> emissive = world.lights().emissive();
+    const std::span<const bake::EmissiveObject> emissive = world.lights().emissive();
     for (std::uint32_t n = 0; n < map.objects.size(); ++n) {
         const map::Object& object = map.objects[n];
         const bool shines = next_emissive < emissive.size() && emissive[next_emissive].object == n;
@@ -90,7 +90,7 @@ Inventory take_inventory(const World& world) {
              object.name});
     }
     for (const map::Light& light : map.lights) {
-        if (!shines(light))
+        if (!bake::shines(light))
             continue;
         const bool sun = light.kind == map::LightKind::directional;
         inventory.items.push_back({sun ? ItemKind::sun : ItemKind::lamp,
@@ -116,7 +116,7 @@ Inventory take_inventory(const World& world) {
             bounds.extend(glm::vec3(position));
         inventory.items.push_back({ItemKind::no_probes, false, half(volume.digest), {}, bounds, volume.name});
     }
-    for (const InteriorVolume& interior : world.interiors()) {
+    for (const bake::InteriorVolume& interior : world.interiors()) {
         if (!interior.probe)
             continue;  // no file holds it
         inventory.items.push_back({ItemKind::interior,
@@ -132,7 +132,7 @@ Inventory take_inventory(const World& world) {
 
 // Column by column: alike stands beside alike, for the compression.
 std::vector<std::uint8_t> encode_inventory(const Inventory& inventory) {
-    StoredWriter writer;
+    RecordWriter writer;
     writer.add(magic);
     writer.add(static_cast<std::uint64_t>(inventory.items.size()));
     for (const Item& item : inventory.items)
@@ -149,7 +149,7 @@ std::vector<std::uint8_t> encode_inventory(const Inventory& inventory) {
 }
 
 std::optional<Inventory> decode_inventory(std::span<const std::uint8_t> bytes) {
-    StoredReader reader(bytes);
+    RecordReader reader(bytes);
     if (reader.read<std::uint64_t>() != magic)
         return std::nullopt;
     const auto count = reader.read<std::uint64_t>();
@@ -233,4 +233,4 @@ std::string describe(const Change& change) {
         what());
 }
 
-}  // namespace drtv::bake
+}  // namespace drtv::reuse

@@ -1,6 +1,6 @@
-#include "bakerd/bake/static_gain.h"
+#include "bakerd/reuse/static_gain.h"
 
-#include "bakerd/bake/footprint.h"
+#include "bakerd/bake/ray_watch.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -10,22 +10,18 @@
 #include <numbers>
 #include <vector>
 
-namespace drtv::bake {
+namespace drtv::reuse {
 namespace {
 
 // Nearer to a lamp than this counts as this: far above any tolerance all the same.
 constexpr float least_distance_m = 0.001f;
-
-float brightest(const glm::vec3& light) {
-    return std::max({light.x, light.y, light.z});
-}
 
 // Of light of that radiance at each of so many points of a path.
 float of_path(float radiance, float scattered, std::uint32_t points) {
     float sum = 0, left = 1;
     for (std::uint32_t point = 0; point < points; ++point, left *= scattered)
         sum += left;
-    return sum * radiance / static_irradiance_range;
+    return sum * radiance / bake::static_irradiance_range;
 }
 
 // A lamp, and how near to it a surface can be.
@@ -62,28 +58,28 @@ float most_irradiance(const std::vector<NearLamp>& lamps) {
 
 }  // namespace
 
-float static_gain(const StaticLights& lights,
+float static_gain(const bake::StaticLights& lights,
                   float scattered,
                   const trace::Scene& scene,
                   std::span<const placement::Position> probes,
-                  const Settings& settings) {
+                  const bake::Settings& settings) {
     const auto within_reach = [&](const glm::vec3& place, float radius_m) {
         return std::ranges::any_of(probes, [&](const placement::Position& probe) {
             return glm::distance(placement::metres(probe), place) - radius_m <= settings.reach_m;
         });
     };
     std::vector<NearLamp> lamps;
-    for (const PointLight& lamp : lights.points()) {
+    for (const bake::PointLight& lamp : lights.points()) {
         if (within_reach(lamp.position, 0))
             lamps.push_back(
                 {lamp.position,
-                 brightest(lamp.intensity),
+                 bake::brightest(lamp.intensity),
                  std::max(scene.distance_to_surface(lamp.position, settings.reach_m), least_distance_m)});
     }
     float irradiance = most_irradiance(lamps), emitted = 0;
-    for (const Sun& sun : lights.suns())
-        irradiance += brightest(sun.irradiance);
-    for (const EmissiveObject& emissive : lights.emissive()) {
+    for (const bake::Sun& sun : lights.suns())
+        irradiance += bake::brightest(sun.irradiance);
+    for (const bake::EmissiveObject& emissive : lights.emissive()) {
         if (within_reach(emissive.centre, emissive.radius_m))
             emitted = std::max(emitted, emissive.radiance);
     }
@@ -93,19 +89,19 @@ float static_gain(const StaticLights& lights,
 }
 
 // Any point of a box is at least as far from each lamp as the box.
-float static_gain(const StaticLights& lights,
+float static_gain(const bake::StaticLights& lights,
                   float scattered,
                   std::span<const map::Bounds> boxes,
-                  const Settings& settings) {
+                  const bake::Settings& settings) {
     float most = 0;
     for (const map::Bounds& box : boxes) {
         float irradiance = 0;
-        for (const PointLight& lamp : lights.points()) {
+        for (const bake::PointLight& lamp : lights.points()) {
             const float distance_m = std::max(
                 glm::distance(lamp.position, glm::clamp(lamp.position, box.low, box.high)), least_distance_m);
             // Beyond, none that a probe knows of shines on what it can see.
             if (distance_m <= 2 * settings.reach_m)
-                irradiance += brightest(lamp.intensity) / (distance_m * distance_m);
+                irradiance += bake::brightest(lamp.intensity) / (distance_m * distance_m);
         }
         most = std::max(most, irradiance);
     }
@@ -113,10 +109,10 @@ float static_gain(const StaticLights& lights,
 }
 
 // Each of its terms has at most so many surfaces in it.
-float raised_gain(float gain, float scattered_before, float scattered_now, const Settings& settings) {
+float raised_gain(float gain, float scattered_before, float scattered_now, const bake::Settings& settings) {
     for (std::uint32_t bounce = 0; scattered_now > scattered_before && bounce < settings.bounces; ++bounce)
         gain *= scattered_now / scattered_before;
     return gain;
 }
 
-}  // namespace drtv::bake
+}  // namespace drtv::reuse

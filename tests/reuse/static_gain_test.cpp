@@ -1,6 +1,6 @@
-#include "bakerd/bake/static_gain.h"
+#include "bakerd/reuse/static_gain.h"
 
-#include "bakerd/bake/footprint.h"
+#include "bakerd/reuse/footprint_record.h"
 #include "tests/bake/worlds.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct LampsOverAPlane {
     }
 
     [[nodiscard]] float gain() const {
-        return bake::static_gain(world->lights(), world->most_scattered(), *scene, probes, settings);
+        return reuse::static_gain(world->lights(), world->most_scattered(), *scene, probes, settings);
     }
     // What the plane radiates so near to one of the lamps, as a share of the range.
     [[nodiscard]] float gain_at(float distance_m) const {
@@ -71,16 +71,16 @@ TEST(StaticGain, AllBouncesCount) {
 TEST(StaticGain, GrowsWithTheSurfaces) {
     bake::Settings settings;
     settings.bounces = 2;
-    EXPECT_EQ(bake::raised_gain(3, 0.5f, 0.5f, settings), 3);
-    EXPECT_EQ(bake::raised_gain(3, 0.5f, 0.2f, settings), 3);
-    EXPECT_FLOAT_EQ(bake::raised_gain(3, 0.5f, 0.75f, settings), 3 * 1.5f * 1.5f);
+    EXPECT_EQ(reuse::raised_gain(3, 0.5f, 0.5f, settings), 3);
+    EXPECT_EQ(reuse::raised_gain(3, 0.5f, 0.2f, settings), 3);
+    EXPECT_FLOAT_EQ(reuse::raised_gain(3, 0.5f, 0.75f, settings), 3 * 1.5f * 1.5f);
 }
 
 TEST(StaticGain, OfBoxesIsByTheirDistance) {
     const LampsOverAPlane lamp({{5, 5, 4}});
     const auto of_box = [&](const map::Bounds& box) {
-        return bake::static_gain(lamp.world->lights(), lamp.world->most_scattered(), std::vector{box},
-                                 lamp.settings);
+        return reuse::static_gain(lamp.world->lights(), lamp.world->most_scattered(), std::vector{box},
+                                  lamp.settings);
     };
     EXPECT_FLOAT_EQ(of_box({{7, 4, 3}, {8, 6, 5}}), lamp.gain_at(2));
     EXPECT_EQ(of_box({{500, 500, 0}, {501, 501, 1}}), 0);

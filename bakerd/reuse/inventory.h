@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace drtv::bake {
+namespace drtv::reuse {
 
 enum class ItemKind : std::uint8_t { fixed, vegetation, lamp, sun, manual_probe, no_probes, interior };
 
@@ -36,7 +36,7 @@ struct Inventory {
     std::vector<Item> items;  // by kind and digest
 };
 
-[[nodiscard]] Inventory take_inventory(const World& world);
+[[nodiscard]] Inventory take_inventory(const bake::World& world);
 
 [[nodiscard]] std::vector<std::uint8_t> encode_inventory(const Inventory& inventory);
 // Nothing when the bytes are not such.
@@ -58,4 +58,4 @@ struct Change {
 // "palm_017 moved".
 [[nodiscard]] std::string describe(const Change& change);
 
-}  // namespace drtv::bake
+}  // namespace drtv::reuse

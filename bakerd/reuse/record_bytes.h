@@ -10,9 +10,9 @@
 #include <type_traits>
 #include <vector>
 
-namespace drtv::bake {
+namespace drtv::reuse {
 
-class StoredWriter {
+class RecordWriter {
   public:
     template <class Value>
     requires std::is_trivially_copyable_v<Value>
@@ -35,10 +35,10 @@ class StoredWriter {
     std::vector<std::uint8_t> bytes_;
 };
 
-class StoredReader {
+class RecordReader {
   public:
     // Of what `compressed` gave; else nothing can be read.
-    explicit StoredReader(std::span<const std::uint8_t> compressed);
+    explicit RecordReader(std::span<const std::uint8_t> compressed);
 
     template <class Value>
     requires std::is_trivially_copyable_v<Value> Value read() {
@@ -80,4 +80,4 @@ class StoredReader {
     bool sound_ = false;
 };
 
-}  // namespace drtv::bake
+}  // namespace drtv::reuse

@@ -1,8 +1,9 @@
 // What an assessment promises, against bakes of both maps: a hit has the same bytes, a near hit lies within
 // its bound.
-#include "bakerd/bake/assessment.h"
+#include "bakerd/reuse/assessment.h"
 
-#include "bakerd/bake/sector_bake.h"
+#include "bakerd/reuse/footprint_record.h"
+#include "bakerd/reuse/rebake.h"
 #include "tests/bake/worlds.h"
 
 #include <gtest/gtest.h>
@@ -124,32 +125,32 @@ Tally check(const Yard& before, const Yard& after, const bake::Settings& setting
     const trace::FloatMode float_mode;
     const auto old_world = open_world(before.build()), new_world = open_world(after.build());
     const auto changes =
-        bake::changes_between(bake::take_inventory(*old_world), bake::take_inventory(*new_world));
+        reuse::changes_between(reuse::take_inventory(*old_world), reuse::take_inventory(*new_world));
     Tally tally;
     for (std::int32_t j = -1; j <= 1; ++j) {
         for (std::int32_t i = -1; i <= 1; ++i) {
-            const bake::BakedSector was = bake::bake_sector(*old_world, {i, j}, settings).value(),
-                                    is = bake::bake_sector(*new_world, {i, j}, settings).value();
-            const auto footprint = bake::decode_footprint(bake::encode_footprint(was.footprint)).value();
-            const bake::Assessment assessment =
-                bake::assess(footprint, settings, changes, tolerance, *new_world);
-            const bool same = encoded(was.sector) == encoded(is.sector);
+            const reuse::Rebake was = reuse::bake_and_record(*old_world, {i, j}, settings).value(),
+                                is = reuse::bake_and_record(*new_world, {i, j}, settings).value();
+            const auto footprint = reuse::decode_footprint(reuse::encode_footprint(was.footprint)).value();
+            const reuse::Assessment assessment =
+                reuse::assess(footprint, settings, changes, tolerance, *new_world);
+            const bool same = encoded(was.baked.sector) == encoded(is.baked.sector);
             tally.same += same ? 1 : 0;
             switch (assessment.verdict) {
-                case bake::Verdict::hit:
+                case reuse::Verdict::hit:
                     ++tally.hits;
                     EXPECT_TRUE(same) << what << ": sector (" << i << ", " << j << ") is said to be the same";
                     break;
-                case bake::Verdict::near_hit:
+                case reuse::Verdict::near_hit:
                     ++tally.near_hits;
                     EXPECT_LE(assessment.bound, tolerance);
-                    EXPECT_LE(error_between(was.sector, is.sector), assessment.bound + 0x1p-13f)
+                    EXPECT_LE(error_between(was.baked.sector, is.baked.sector), assessment.bound + 0x1p-13f)
                         << what << ": sector (" << i << ", " << j << "), "
-                        << bake::describe(assessment, changes);
+                        << reuse::describe(assessment, changes);
                     break;
-                case bake::Verdict::rebake:
+                case reuse::Verdict::rebake:
                     ++tally.rebakes;
-                    EXPECT_FALSE(bake::describe(assessment, changes).empty());
+                    EXPECT_FALSE(reuse::describe(assessment, changes).empty());
                     break;
             }
         }
@@ -221,8 +222,8 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
     bake::Settings settings = settings_of_yard(tolerance == 0 ? 32 : 256, false, GetParam() % 3 == 0 ? 1 : 2);
     settings.tolerance = tolerance;
     struct State {
-        bake::BakedSector baked;
-        bake::Inventory inventory;  // of its map
+        reuse::Rebake rebake;
+        reuse::Inventory inventory;  // of its map
     };
     std::map<map::SectorCoordinate, State> states;
     std::size_t taken_over = 0, baked_again = 0, off = 0;
@@ -230,42 +231,43 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
         const std::string what = "seed " + std::to_string(GetParam()) + ", " + std::to_string(n) + ": " +
                                  (n == 0 ? "" : edit(yard, random));
         const auto world = open_world(yard.build());
-        const bake::Inventory inventory = bake::take_inventory(*world);
+        const reuse::Inventory inventory = reuse::take_inventory(*world);
         for (std::int32_t j = -1; j <= 1; ++j) {
             for (std::int32_t i = -1; i <= 1; ++i) {
-                const bake::BakedSector fresh = bake::bake_sector(*world, {i, j}, settings).value();
+                const reuse::Rebake fresh = reuse::bake_and_record(*world, {i, j}, settings).value();
                 const auto known = states.find({i, j});
                 if (known == states.end()) {
                     states[{i, j}] = {fresh, inventory};
                     continue;
                 }
                 State& state = known->second;
-                const auto changes = bake::changes_between(state.inventory, inventory);
+                const auto changes = reuse::changes_between(state.inventory, inventory);
                 // As it comes back from the store.
-                bake::EarlierBake earlier{
-                    state.baked.sector,
-                    bake::decode_footprint(bake::encode_footprint(state.baked.footprint)).value(),
+                reuse::EarlierBake earlier{
+                    state.rebake.baked.sector,
+                    reuse::decode_footprint(reuse::encode_footprint(state.rebake.footprint)).value(),
                     {}};
-                earlier.assessment = bake::assess(earlier.footprint, settings, changes, tolerance, *world);
-                if (earlier.assessment.verdict == bake::Verdict::rebake) {
-                    state = {bake::bake_sector(*world, {i, j}, settings, &earlier).value(), inventory};
-                    taken_over += state.baked.probes_taken_over;
-                    baked_again += state.baked.sector.probes.size() - state.baked.probes_taken_over;
-                    ASSERT_LE(error_between(state.baked.sector, fresh.sector), 1) << what;
-                    for (std::size_t p = 0; p < fresh.sector.probes.size(); ++p) {
+                earlier.assessment = reuse::assess(earlier.footprint, settings, changes, tolerance, *world);
+                if (earlier.assessment.verdict == reuse::Verdict::rebake) {
+                    state = {reuse::bake_and_record(*world, {i, j}, settings, &earlier).value(), inventory};
+                    taken_over += state.rebake.probes_reused;
+                    baked_again += state.rebake.baked.sector.probes.size() - state.rebake.probes_reused;
+                    ASSERT_LE(error_between(state.rebake.baked.sector, fresh.baked.sector), 1) << what;
+                    for (std::size_t p = 0; p < fresh.baked.sector.probes.size(); ++p) {
                         const float bound =
-                            state.baked.footprint.probes[p].share * state.baked.footprint.gain();
+                            state.rebake.footprint.probes[p].share * state.rebake.footprint.gain();
                         off += bound > 0 ? 1 : 0;
-                        EXPECT_LE(error_of_probe(state.baked.sector, fresh.sector, p),
+                        EXPECT_LE(error_of_probe(state.rebake.baked.sector, fresh.baked.sector, p),
                                   bound + (bound > 0 ? 0x1p-13f : 0))
                             << what << ", probe " << p;
                     }
                 }
                 if (tolerance == 0) {
-                    EXPECT_EQ(encoded(state.baked.sector), encoded(fresh.sector))
+                    EXPECT_EQ(encoded(state.rebake.baked.sector), encoded(fresh.baked.sector))
                         << what << ", sector (" << i << ", " << j << ")";
                 } else {
-                    EXPECT_LE(error_between(state.baked.sector, fresh.sector), tolerance + 0x1p-13f)
+                    EXPECT_LE(error_between(state.rebake.baked.sector, fresh.baked.sector),
+                              tolerance + 0x1p-13f)
                         << what << ", sector (" << i << ", " << j << ")";
                 }
             }
@@ -285,9 +287,9 @@ TEST(EarlierBake, RaysOfSolidTestsAreUsedUp) {
     const Yard yard(3, false);
     const bake::Settings settings = settings_of_yard(32, false);
     const auto world = open_world(yard.build());
-    const bake::BakedSector was = bake::bake_sector(*world, {0, 0}, settings).value();
-    bake::EarlierBake earlier{was.sector, was.footprint,
-                              bake::assess(was.footprint, settings, {}, 0, *world)};
+    const reuse::Rebake was = reuse::bake_and_record(*world, {0, 0}, settings).value();
+    reuse::EarlierBake earlier{was.baked.sector, was.footprint,
+                               reuse::assess(was.footprint, settings, {}, 0, *world)};
     ASSERT_EQ(earlier.assessment.flips.size(), was.footprint.solid_tests.size());
     const auto test = static_cast<std::size_t>(
         std::ranges::max_element(was.footprint.solid_tests, {}, &bake::SolidTest::to_flip) -
@@ -295,7 +297,8 @@ TEST(EarlierBake, RaysOfSolidTestsAreUsedUp) {
     const bake::SolidTest before = was.footprint.solid_tests[test];
     ASSERT_GE(before.to_flip, 2);
     earlier.assessment.flips[test] = 1;
-    const auto tests = bake::bake_sector(*world, {0, 0}, settings, &earlier).value().footprint.solid_tests;
+    const auto tests =
+        reuse::bake_and_record(*world, {0, 0}, settings, &earlier).value().footprint.solid_tests;
     EXPECT_EQ(std::ranges::count(
                   tests, bake::SolidTest{before.position, static_cast<std::uint8_t>(before.to_flip - 1)}),
               1);
@@ -310,13 +313,13 @@ TEST(EarlierBake, TheGainIsOfTheBrighterMap) {
     bake::Settings settings = settings_of_yard(32, false);
     settings.tolerance = 1 / 512.0f;
     const auto world = open_world(yard.build());
-    const bake::BakedSector was = bake::bake_sector(*world, {0, 0}, settings).value();
+    const reuse::Rebake was = reuse::bake_and_record(*world, {0, 0}, settings).value();
     ASSERT_GT(was.footprint.static_gain, 0);
-    bake::EarlierBake earlier{was.sector, was.footprint,
-                              bake::assess(was.footprint, settings, {}, settings.tolerance, *world)};
+    reuse::EarlierBake earlier{was.baked.sector, was.footprint,
+                               reuse::assess(was.footprint, settings, {}, settings.tolerance, *world)};
     earlier.assessment.static_gain = 0;
     const auto footprint = [&] {
-        return bake::bake_sector(*world, {0, 0}, settings, &earlier).value().footprint;
+        return reuse::bake_and_record(*world, {0, 0}, settings, &earlier).value().footprint;
     };
     earlier.footprint.most_scattered = 2 * was.footprint.most_scattered;
     // As it was, exactly: nothing is left of the map before.
@@ -338,20 +341,21 @@ TEST(EarlierBake, OfOtherHeightsOrOfAnotherFileIsNotUsed) {
     tower.things.push_back({"tower", "", 1, {100, 60, -100}});
     const bake::Settings settings = settings_of_yard(32, false);
     const auto before = open_world(yard.build()), after = open_world(tower.build());
-    const bake::BakedSector was = bake::bake_sector(*before, {0, 0}, settings).value(),
-                            is = bake::bake_sector(*after, {0, 0}, settings).value();
-    const auto changes = bake::changes_between(bake::take_inventory(*before), bake::take_inventory(*after));
-    bake::EarlierBake earlier{was.sector, was.footprint,
-                              bake::assess(was.footprint, settings, changes, 0, *after)};
-    const bake::BakedSector higher = bake::bake_sector(*after, {0, 0}, settings, &earlier).value();
-    EXPECT_EQ(higher.probes_taken_over, 0u);
-    EXPECT_EQ(encoded(higher.sector), encoded(is.sector));
-    earlier = {is.sector, is.footprint, bake::assess(is.footprint, settings, {}, 0, *after)};
-    EXPECT_EQ(bake::bake_sector(*after, {0, 0}, settings, &earlier).value().probes_taken_over,
-              is.sector.probes.size());
+    const reuse::Rebake was = reuse::bake_and_record(*before, {0, 0}, settings).value(),
+                        is = reuse::bake_and_record(*after, {0, 0}, settings).value();
+    const auto changes =
+        reuse::changes_between(reuse::take_inventory(*before), reuse::take_inventory(*after));
+    reuse::EarlierBake earlier{was.baked.sector, was.footprint,
+                               reuse::assess(was.footprint, settings, changes, 0, *after)};
+    const reuse::Rebake higher = reuse::bake_and_record(*after, {0, 0}, settings, &earlier).value();
+    EXPECT_EQ(higher.probes_reused, 0u);
+    EXPECT_EQ(encoded(higher.baked.sector), encoded(is.baked.sector));
+    earlier = {is.baked.sector, is.footprint, reuse::assess(is.footprint, settings, {}, 0, *after)};
+    EXPECT_EQ(reuse::bake_and_record(*after, {0, 0}, settings, &earlier).value().probes_reused,
+              is.baked.sector.probes.size());
     earlier.sector.probes.pop_back();
-    EXPECT_EQ(encoded(bake::bake_sector(*after, {0, 0}, settings, &earlier).value().sector),
-              encoded(is.sector));
+    EXPECT_EQ(encoded(reuse::bake_and_record(*after, {0, 0}, settings, &earlier).value().baked.sector),
+              encoded(is.baked.sector));
 }
 
 TEST(Assessment, TheSameMapIsAllHits) {
@@ -396,13 +400,14 @@ TEST(Assessment, PlacementLooksWhereNoRayGoes) {
     const trace::FloatMode float_mode;
     const bake::Settings settings = settings_of_yard(64, false);
     const auto before = cellar(false), after = cellar(true);
-    const auto changes = bake::changes_between(bake::take_inventory(*before), bake::take_inventory(*after));
-    const bake::BakedSector was = bake::bake_sector(*before, {0, 0}, settings).value(),
-                            is = bake::bake_sector(*after, {0, 0}, settings).value();
-    ASSERT_GT(is.sector.probes.size(), was.sector.probes.size());
-    const bake::Assessment assessment = bake::assess(was.footprint, settings, changes, 1 / 32.0f, *after);
-    EXPECT_EQ(assessment.verdict, bake::Verdict::rebake);
-    EXPECT_EQ(bake::describe(assessment, changes), "floor was added: it may move probes");
+    const auto changes =
+        reuse::changes_between(reuse::take_inventory(*before), reuse::take_inventory(*after));
+    const reuse::Rebake was = reuse::bake_and_record(*before, {0, 0}, settings).value(),
+                        is = reuse::bake_and_record(*after, {0, 0}, settings).value();
+    ASSERT_GT(is.baked.sector.probes.size(), was.baked.sector.probes.size());
+    const reuse::Assessment assessment = reuse::assess(was.footprint, settings, changes, 1 / 32.0f, *after);
+    EXPECT_EQ(assessment.verdict, reuse::Verdict::rebake);
+    EXPECT_EQ(reuse::describe(assessment, changes), "floor was added: it may move probes");
 }
 
 TEST(Assessment, ToleranceLetsAFarTreeBe) {
@@ -448,11 +453,12 @@ TEST(Assessment, AnEmissiveEndCounts) {
     const trace::FloatMode float_mode;
     const auto before = beam(0), after = beam(0.05);
     const bake::Settings settings = settings_of_yard(32, false);
-    const bake::Footprint footprint = bake::bake_sector(*before, {0, 0}, settings).value().footprint;
+    const reuse::Footprint footprint = reuse::bake_and_record(*before, {0, 0}, settings).value().footprint;
     ASSERT_EQ(before->lights().emissive().size(), 1u);
     const bake::EmissiveObject& light = before->lights().emissive()[0];
-    const auto changes = bake::changes_between(bake::take_inventory(*before), bake::take_inventory(*after));
-    const bake::Assessment assessment = bake::assess(footprint, settings, changes, 0, *after);
+    const auto changes =
+        reuse::changes_between(reuse::take_inventory(*before), reuse::take_inventory(*after));
+    const reuse::Assessment assessment = reuse::assess(footprint, settings, changes, 0, *after);
     int in_reach = 0;
     for (std::size_t p = 0; p < footprint.probes.size(); ++p) {
         if (glm::distance(placement::metres(footprint.probes[p].position), light.centre) - light.radius_m >
@@ -465,16 +471,16 @@ TEST(Assessment, AnEmissiveEndCounts) {
 }
 
 TEST(Inventory, ComesBackAsItWasStored) {
-    const bake::Inventory inventory = bake::take_inventory(*open_world(Yard(5, true).build()));
+    const reuse::Inventory inventory = reuse::take_inventory(*open_world(Yard(5, true).build()));
     EXPECT_EQ(inventory.items.size(), 1u + 14 + 40 + 2 + 1);
-    const std::vector<std::uint8_t> bytes = bake::encode_inventory(inventory);
-    const auto back = bake::decode_inventory(bytes);
+    const std::vector<std::uint8_t> bytes = reuse::encode_inventory(inventory);
+    const auto back = reuse::decode_inventory(bytes);
     ASSERT_TRUE(back);
-    EXPECT_TRUE(bake::changes_between(inventory, *back).empty());
+    EXPECT_TRUE(reuse::changes_between(inventory, *back).empty());
     for (std::size_t n = 0; n < inventory.items.size(); ++n)
         EXPECT_EQ(back->items[n].name, inventory.items[n].name);
     for (std::size_t size = 0; size < bytes.size(); size += 53)
-        EXPECT_FALSE(bake::decode_inventory(std::span(bytes).first(size)));
+        EXPECT_FALSE(reuse::decode_inventory(std::span(bytes).first(size)));
 }
 
 TEST(Inventory, ChangesAreNamed) {
@@ -482,11 +488,11 @@ TEST(Inventory, ChangesAreNamed) {
     const auto change_of = [&](const std::function<void(Yard&)>& edit_it) {
         Yard other = yard;
         edit_it(other);
-        const auto changes = bake::changes_between(bake::take_inventory(*open_world(yard.build())),
-                                                   bake::take_inventory(*open_world(other.build())));
+        const auto changes = reuse::changes_between(reuse::take_inventory(*open_world(yard.build())),
+                                                    reuse::take_inventory(*open_world(other.build())));
         std::string text;
-        for (const bake::Change& change : changes)
-            text += bake::describe(change) + ";";
+        for (const reuse::Change& change : changes)
+            text += reuse::describe(change) + ";";
         return text;
     };
     EXPECT_EQ(change_of([](Yard&) {}), "");

@@ -2,10 +2,11 @@
 // between the two.
 #pragma once
 
-#include "bakerd/bake/footprint.h"
-#include "bakerd/bake/inventory.h"
-#include "bakerd/bake/sampling.h"
+#include "bakerd/bake/settings.h"
 #include "bakerd/bake/world.h"
+#include "bakerd/reuse/footprint.h"
+#include "bakerd/reuse/inventory.h"
+#include "bakerd/reuse/verdict.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,27 +15,15 @@
 #include <string>
 #include <vector>
 
-namespace drtv::bake {
-
-enum class Verdict : std::uint8_t {
-    hit,       // the same bytes
-    near_hit,  // no coefficient differs by more than the bound
-    rebake,
-};
-
-// Why a result does not hold, or what came nearest to that.
-enum class Cause : std::uint8_t {
-    rays,       // rays cross where the thing is or was
-    placement,  // it may move probes
-    light,      // it shines on the sector's probes
-    interior,   // it is the sector's own
-};
+namespace drtv::reuse {
 
 struct Assessment {
     Verdict verdict = Verdict::hit;
-    float bound = 0;  // on the change of any coefficient, as a share of its range; of a hit 0, and 1 and more
-                      // means that no bound is known
-    // What a bake can take over (sector_bake.h): whether probes stand where they stood, with how many rays of
+    // On the change of any coefficient, as a share of its range; of a hit 0, and 1 and more means that no
+    // bound is known.
+    float bound = 0;
+    float tolerance = 0;  // with which it was assessed
+    // What a bake can take over (rebake.h): whether probes stand where they stood, with how many rays of
     // each solid test may end otherwise; and how much of each probe may differ. No bounds where only the
     // whole can be baked again.
     bool placement_holds = true;
@@ -54,17 +43,17 @@ struct Assessment {
 // nothing.
 //
 // Ranges of coefficients: sky visibility 1, radiance transfer 0.2821 (i = 0) and 0.9772 (i > 0), static
-// irradiance static_irradiance_range. REQUIRES: a FloatMode on this thread.
+// irradiance bake::static_irradiance_range. REQUIRES: a FloatMode on this thread.
 [[nodiscard]] Assessment assess(const Footprint& footprint,
-                                const Settings& settings,
+                                const bake::Settings& settings,
                                 std::span<const Change> changes,
                                 float tolerance,
-                                World& world);
+                                bake::World& world);
 
 // Of the sector's probes those that a bake cannot take over. REQUIRES: the verdict is rebake.
-[[nodiscard]] float share_to_bake(const Assessment& assessment, float tolerance);
+[[nodiscard]] float share_to_bake(const Assessment& assessment);
 
 // "palm_017 moved: rays cross column (12, 7), weight 0.8 %".
 [[nodiscard]] std::string describe(const Assessment& assessment, std::span<const Change> changes);
 
-}  // namespace drtv::bake
+}  // namespace drtv::reuse

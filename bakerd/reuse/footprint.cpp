@@ -1,0 +1,15 @@
+#include "bakerd/reuse/footprint.h"
+
+#include <string_view>
+
+namespace drtv::reuse {
+
+map::Digest results_key(const bake::Settings& settings) {
+    map::Hasher hasher;
+    hasher.add_sized(std::string_view("drtv results"));
+    hasher.add(bake::settings_key(settings));
+    hasher.add(footprint_version);
+    return hasher.finish();
+}
+
+}  // namespace drtv::reuse

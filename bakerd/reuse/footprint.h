@@ -1,0 +1,77 @@
+// What of a map a baked sector depends on (DESIGN, promise 2): where its rays went, with how much weight, and
+// where its placement looked. As long as nothing changes there, the sector's file stays the same, byte for
+// byte (assessment.h).
+#pragma once
+
+#include "bakerd/bake/placed_sector.h"
+#include "bakerd/bake/settings.h"
+#include "bakerd/map/digest.h"
+#include "bakerd/map/ground.h"
+#include "bakerd/reuse/footprint_grid.h"
+#include "placement/placement.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace drtv::reuse {
+
+// Of what a record says, and how: results whose record is of another version are never candidates.
+inline constexpr std::uint32_t footprint_version = 4;
+
+// Results of a sector with the same key may stand for each other, where their records say so: settings_key
+// and the version of the records.
+[[nodiscard]] map::Digest results_key(const bake::Settings& settings);
+
+// What is known of a probe beyond what its file says.
+struct ProbeRecord {
+    placement::Position position{};
+    // Its share of the file's statistics.
+    std::uint32_t rays = 0, shadow_rays = 0, back_hits = 0;
+    float error = 0;
+    // Of its paths' weight, what may have changed since it was baked; above 0 of one that was taken over from
+    // another map within a tolerance. Times the gain it bounds how far its coefficients are off.
+    float share = 0;
+
+    bool operator==(const ProbeRecord&) const = default;
+};
+
+struct Footprint {
+    map::SectorCoordinate sector;
+    float reach_m = 0;
+    std::uint32_t rays = 0;  // from each probe
+    // Nothing is known of how much a change would matter: local transfer, or a number of rays that follows
+    // from what they find.
+    bool without_bounds = false;
+    // The most that a path can bring from static lights, over bake::static_irradiance_range (static_gain.h);
+    // 0 where there are none. Of all maps whose probes are here.
+    float static_gain = 0;
+    float most_scattered = 1;  // of their surfaces (trace::most_scattered), above 0
+    float placement_m = 0;     // how far around the sector placement looked down its columns
+    float min_distance_m = 0;  // between probes
+
+    std::vector<ProbeRecord> probes;
+    // Where rays went; the probes' first ones need no record: they follow from where the probes stand.
+    FootprintGrid grid;
+    std::vector<std::uint64_t> crossed;  // by column: its layers that a ray crossed
+    std::vector<std::uint8_t>
+        weights;  // by block and quarter: the largest share in a coefficient of a probe, as a code
+    std::vector<bake::SolidTest> solid_tests;  // sorted
+
+    bool operator==(const Footprint&) const = default;
+
+    // What a path's weight counts: the sky's radiance is 1.
+    [[nodiscard]] float gain() const { return static_gain < 1 ? 1 : static_gain; }
+    // On how far any coefficient is off.
+    [[nodiscard]] float bound() const {
+        float share = 0;
+        for (const ProbeRecord& probe : probes)
+            share = share < probe.share ? probe.share : share;
+        return share * gain();
+    }
+    [[nodiscard]] std::uint8_t weight(std::size_t block, std::size_t quarter) const {
+        return weights[block * quarter_count + quarter];
+    }
+};
+
+}  // namespace drtv::reuse

@@ -1,0 +1,181 @@
+#include "bakerd/reuse/rebake.h"
+
+#include "bakerd/reuse/footprint_recorder.h"
+#include "bakerd/reuse/static_gain.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace drtv::reuse {
+namespace {
+
+// Whether the record belongs to the file, and probes can be reused one by one.
+bool is_usable(const EarlierBake& earlier, const FootprintGrid& grid) {
+    const std::size_t count = earlier.sector.probes.size();
+    const bool has_bounds =
+        !earlier.footprint.without_bounds && earlier.assessment.probe_bounds.size() == count;
+    const bool belongs = earlier.footprint.grid == grid && earlier.footprint.probes.size() == count;
+    // Many surfaces seen from behind are reported with their names, which are not kept.
+    return has_bounds && belongs && !bake::has_many_back_hits(earlier.sector.statistics);
+}
+
+// Where the earlier bake's probes stand, as placement would give it.
+bake::PlacedSector placement_of(const EarlierBake& earlier) {
+    const Sector& file = earlier.sector;
+    bake::PlacedSector placed;
+    placed.sector.i = file.i;
+    placed.sector.j = file.j;
+    placed.sector.z_origin_units = file.z_origin_units;
+    placed.sector.z_shift = file.z_shift;
+    for (const Probe& probe : file.probes)
+        placed.sector.probes.push_back({probe.position, probe.kind, {}, {}});
+    for (const ProbeRecord& probe : earlier.footprint.probes)
+        placed.positions.push_back(probe.position);
+    const Statistics& s = file.statistics;
+    placed.report = {
+        s.candidates, s.moved_out, s.dropped_in_solid, s.removed_by_volume, s.thinned, s.used_distance_m};
+    // Rays that may end otherwise cannot be counted on any more.
+    placed.solid_tests = earlier.footprint.solid_tests;
+    for (std::size_t n = 0; n < placed.solid_tests.size(); ++n) {
+        std::uint8_t& to_flip = placed.solid_tests[n].to_flip;
+        to_flip = static_cast<std::uint8_t>(to_flip - earlier.assessment.flips[n]);
+    }
+    return placed;
+}
+
+bake::BakedProbe baked_probe(const EarlierBake& earlier, std::size_t p, std::uint32_t paths) {
+    bake::BakedProbe probe;
+    probe.transfer = earlier.sector.probes[p].transfer;
+    probe.sky_visibility = earlier.sector.probes[p].sky_visibility;
+    if (!earlier.sector.static_irradiance.empty())
+        probe.static_irradiance = earlier.sector.static_irradiance[p];
+    const ProbeRecord& record = earlier.footprint.probes[p];
+    probe.counts = {paths, record.rays, record.shadow_rays, record.back_hits, record.error};
+    return probe;
+}
+
+// What the bake need not find out again.
+bake::Given given_by(const EarlierBake& earlier, const bake::Settings& settings) {
+    bake::Given given;
+    if (earlier.assessment.placement_holds) {
+        given.placement = placement_of(earlier);
+        given.grid = earlier.sector.grid;
+    }
+    for (std::size_t p = 0; p < earlier.footprint.probes.size(); ++p) {
+        if (earlier.assessment.probe_bounds[p] <= earlier.assessment.tolerance)
+            given.probes[earlier.footprint.probes[p].position] = baked_probe(earlier, p, settings.rays);
+    }
+    return given;
+}
+
+// By place, of the probes given: of their paths' weight, what may have changed.
+std::map<placement::Position, float, bake::ByPlace> changed_shares(const EarlierBake& earlier) {
+    std::map<placement::Position, float, bake::ByPlace> shares;
+    for (std::size_t p = 0; p < earlier.footprint.probes.size(); ++p) {
+        const float bound = earlier.assessment.probe_bounds[p];
+        if (bound <= earlier.assessment.tolerance)
+            shares[earlier.footprint.probes[p].position] = bound / earlier.assessment.gain;
+    }
+    return shares;
+}
+
+class Recording {
+  public:
+    Recording(bake::World& world, map::SectorCoordinate sector, const bake::Settings& settings)
+        : world_(world),
+          sector_(sector),
+          settings_(settings),
+          scene_(world.surroundings(sector, settings).scene),
+          grid_(footprint_grid(sector, settings, *scene_)),
+          recorders_(sector, grid_) {}
+
+    tl::expected<Rebake, std::string> bake(const EarlierBake* earlier) {
+        if (earlier != nullptr && !is_usable(*earlier, grid_))
+            earlier = nullptr;
+        const bake::Given given = earlier != nullptr ? given_by(*earlier, settings_) : bake::Given{};
+        const auto watch = [&]() -> bake::RayWatch& { return recorders_.of_this_thread(); };
+        auto baked = bake::bake_sector(world_, sector_, settings_, given, watch);
+        if (!baked)
+            return tl::unexpected(baked.error());
+        Rebake result{std::move(*baked), {}, 0};
+        record_settings(result.footprint);
+        record_probes(result, earlier);
+        record_static_light(result, earlier);
+        record_rays(result, earlier);
+        result.footprint.solid_tests = result.baked.solid_tests;
+        return result;
+    }
+
+  private:
+    void record_settings(Footprint& footprint) const {
+        footprint.sector = sector_;
+        footprint.reach_m = settings_.reach_m;
+        footprint.rays = settings_.rays;
+        footprint.without_bounds = settings_.local_transfer || settings_.error > 0;
+        footprint.placement_m = bake::placement_margin_m(settings_);
+        footprint.min_distance_m = settings_.min_distance_m;
+    }
+
+    static void record_probes(Rebake& result, const EarlierBake* earlier) {
+        std::map<placement::Position, float, bake::ByPlace> shares;
+        if (earlier != nullptr)
+            shares = changed_shares(*earlier);
+        for (std::size_t p = 0; p < result.baked.positions.size(); ++p) {
+            const placement::Position& position = result.baked.positions[p];
+            const bake::ProbeCounts& counts = result.baked.counts[p];
+            const auto reused = shares.find(position);
+            const bool is_reused = reused != shares.end();
+            const float share = is_reused ? reused->second : 0;
+            result.footprint.probes.push_back(
+                {position, counts.rays, counts.shadow_rays, counts.back_hits, counts.error, share});
+            result.probes_reused += is_reused ? 1 : 0;
+        }
+    }
+
+    // Of all maps of which probes are in the file.
+    void record_static_light(Rebake& result, const EarlierBake* earlier) const {
+        Footprint& footprint = result.footprint;
+        const bool near =
+            std::ranges::any_of(footprint.probes, [](const ProbeRecord& probe) { return probe.share > 0; });
+        footprint.most_scattered = world_.most_scattered();
+        if (near)
+            footprint.most_scattered = std::max(footprint.most_scattered, earlier->footprint.most_scattered);
+        footprint.static_gain = static_gain(
+            world_.lights(), footprint.most_scattered, *scene_, result.baked.positions, settings_);
+        if (near)
+            footprint.static_gain = std::max(footprint.static_gain, earlier->assessment.static_gain);
+    }
+
+    // What was reused still depends on where its own rays went; older rays of the other probes are among
+    // these, and cost sharpness alone.
+    void record_rays(Rebake& result, const EarlierBake* earlier) {
+        if (result.probes_reused == 0) {
+            recorders_.store(result.footprint);
+            return;
+        }
+        result.footprint.grid = earlier->footprint.grid;
+        result.footprint.crossed = earlier->footprint.crossed;
+        result.footprint.weights = earlier->footprint.weights;
+        recorders_.merge_into(result.footprint);
+    }
+
+    bake::World& world_;
+    const map::SectorCoordinate sector_;
+    const bake::Settings& settings_;
+    const std::shared_ptr<const trace::Scene> scene_;
+    const FootprintGrid grid_;
+    FootprintRecorders recorders_;
+};
+
+}  // namespace
+
+tl::expected<Rebake, std::string> bake_and_record(bake::World& world,
+                                                  map::SectorCoordinate coordinate,
+                                                  const bake::Settings& settings,
+                                                  const EarlierBake* earlier) {
+    const trace::FloatMode float_mode;
+    return Recording(world, coordinate, settings).bake(earlier);
+}
+
+}  // namespace drtv::reuse
