@@ -13,10 +13,6 @@
 namespace drtv::bake {
 namespace {
 
-float luminance(const glm::vec3& colour) {
-    return colour.x + colour.y + colour.z;
-}
-
 glm::vec3 radiometric(const glm::vec3& photometric) {
     return photometric / lumens_per_watt;
 }
@@ -27,8 +23,8 @@ PointLight point_light(const map::Light& light) {
     point.intensity = radiometric(light.colour * light.intensity);
     point.range_m = light.range_m;
     if (light.kind == map::LightKind::spot) {
-        const double outer = map::cos_sin(static_cast<double>(light.outer_cone_radians)).x,
-                     inner = map::cos_sin(static_cast<double>(light.inner_cone_radians)).x;
+        const double outer = map::cos_sin(static_cast<double>(light.outer_cone_radians)).x;
+        const double inner = map::cos_sin(static_cast<double>(light.inner_cone_radians)).x;
         point.direction = light.direction;
         point.cone_scale = static_cast<float>(1 / std::max(0.001, inner - outer));
         point.cone_offset = static_cast<float>(-outer) * point.cone_scale;
@@ -47,58 +43,83 @@ glm::vec3 mean_colour(const map::Map& map, const map::TextureView& view) {
     return map::brightest(texture) == glm::vec3(0) ? mean : glm::max(mean, 1 / 65535.0f);
 }
 
+// Emissive triangles of an object while they are gathered.
+class EmissiveTriangles {
+  public:
+    EmissiveTriangles(const map::Object& object, std::size_t primitive_count)
+        : world_from_object_(object.world_from_object), numbers_(primitive_count) {
+        const glm::dmat3 axes(world_from_object_);
+        mirrored_ = glm::dot(glm::cross(axes[0], axes[1]), axes[2]) < 0;
+    }
+
+    void add(std::uint32_t p, const map::Primitive& primitive, double radiance, bool both_sides) {
+        numbers_[p].assign(primitive.triangles.size(), UINT32_MAX);
+        for (std::uint32_t t = 0; t < primitive.triangles.size(); ++t) {
+            const auto corner = [&](glm::length_t k) {
+                return world_from_object_ * glm::dvec4(primitive.positions[primitive.triangles[t][k]], 1);
+            };
+            const glm::dvec3 a = corner(0);
+            const glm::dvec3 b = corner(mirrored_ ? 2 : 1);
+            const glm::dvec3 c = corner(mirrored_ ? 1 : 2);
+            // Of the corners as they are kept, in float.
+            const glm::vec3 ab = glm::vec3(b) - glm::vec3(a);
+            const glm::vec3 ac = glm::vec3(c) - glm::vec3(a);
+            const double power = static_cast<double>(glm::length(glm::cross(ab, ac))) / 2 * radiance;
+            if (!(power > 0))
+                continue;
+            numbers_[p][t] = static_cast<std::uint32_t>(triangles_.size());
+            triangles_.push_back({p, t, glm::vec3(a), glm::vec3(b), glm::vec3(c), both_sides, 0, 0});
+            powers_.push_back(power);
+            sum_ += power;
+            for (const glm::dvec3& v : {a, b, c}) {
+                low_ = glm::min(low_, v);
+                high_ = glm::max(high_, v);
+            }
+        }
+    }
+
+    void store(EmissiveObject& emissive) {
+        double before = 0;
+        for (std::size_t n = 0; n < powers_.size(); ++n) {
+            triangles_[n].share = static_cast<float>(powers_[n] / sum_);
+            triangles_[n].share_before = static_cast<float>(before / sum_);
+            before += powers_[n];
+        }
+        emissive.centre = glm::vec3((low_ + high_) / 2.0);
+        emissive.radius_m = static_cast<float>(glm::length(high_ - low_) / 2);
+        emissive.power = static_cast<float>(sum_);
+        emissive.triangles = std::move(triangles_);
+        emissive.numbers = std::move(numbers_);
+    }
+
+  private:
+    const glm::dmat4x3 world_from_object_;
+    bool mirrored_ = false;
+    std::vector<EmissiveObject::Triangle> triangles_;
+    std::vector<std::vector<std::uint32_t>> numbers_;
+    std::vector<double> powers_;  // by triangle
+    double sum_ = 0;
+    glm::dvec3 low_ = glm::dvec3(1e30);
+    glm::dvec3 high_ = glm::dvec3(-1e30);
+};
+
 EmissiveObject emissive_object(const map::Map& map, std::uint32_t index) {
     const map::Object& object = map.objects[index];
     const map::Mesh& mesh = map.meshes[object.mesh];
     EmissiveObject emissive;
     emissive.object = index;
-    emissive.numbers.resize(mesh.primitives.size());
-    const glm::dmat4x3 world_from_object(object.world_from_object);
-    const glm::dmat3 axes(world_from_object);
-    const bool mirrored = glm::dot(glm::cross(axes[0], axes[1]), axes[2]) < 0;
-    glm::dvec3 low(1e30), high(-1e30);
-    std::vector<double> powers;
-    double sum = 0;
+    EmissiveTriangles triangles(object, mesh.primitives.size());
     for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p) {
         const map::Primitive& primitive = mesh.primitives[p];
         const map::Material& material = map.materials[primitive.material];
-        const double radiance = static_cast<double>(
-            luminance(radiometric(material.emission) * mean_colour(map, material.emission_texture)));
+        const glm::vec3 emission = radiometric(material.emission);
+        const float radiance = luminance(emission * mean_colour(map, material.emission_texture));
         if (!(radiance > 0))
             continue;
-        emissive.radiance = std::max(emissive.radiance, brightest(radiometric(material.emission)));
-        emissive.numbers[p].assign(primitive.triangles.size(), UINT32_MAX);
-        for (std::uint32_t t = 0; t < primitive.triangles.size(); ++t) {
-            const auto corner = [&](glm::length_t k) {
-                return world_from_object * glm::dvec4(primitive.positions[primitive.triangles[t][k]], 1);
-            };
-            const glm::dvec3 a = corner(0), b = corner(mirrored ? 2 : 1), c = corner(mirrored ? 1 : 2);
-            // Of the corners as they are kept, in float.
-            const double power = static_cast<double>(glm::length(
-                                     glm::cross(glm::vec3(b) - glm::vec3(a), glm::vec3(c) - glm::vec3(a)))) /
-                                 2 * radiance;
-            if (!(power > 0))
-                continue;
-            emissive.numbers[p][t] = static_cast<std::uint32_t>(emissive.triangles.size());
-            emissive.triangles.push_back(
-                {p, t, glm::vec3(a), glm::vec3(b), glm::vec3(c), material.double_sided, 0, 0});
-            powers.push_back(power);
-            sum += power;
-            for (const glm::dvec3& v : {a, b, c}) {
-                low = glm::min(low, v);
-                high = glm::max(high, v);
-            }
-        }
+        emissive.radiance = std::max(emissive.radiance, brightest(emission));
+        triangles.add(p, primitive, static_cast<double>(radiance), material.double_sided);
     }
-    double before = 0;
-    for (std::size_t n = 0; n < powers.size(); ++n) {
-        emissive.triangles[n].share = static_cast<float>(powers[n] / sum);
-        emissive.triangles[n].share_before = static_cast<float>(before / sum);
-        before += powers[n];
-    }
-    emissive.centre = glm::vec3((low + high) / 2.0);
-    emissive.radius_m = static_cast<float>(glm::length(high - low) / 2);
-    emissive.power = static_cast<float>(sum);
+    triangles.store(emissive);
     return emissive;
 }
 
@@ -164,126 +185,6 @@ StaticLights::StaticLights(std::shared_ptr<const map::Map> map) : map_(std::move
         if (emissive.power > 0)
             emissive_.push_back(std::move(emissive));
     }
-}
-
-LightTree::LightTree(const StaticLights& lights, const glm::vec3& centre, float reach_m) {
-    std::vector<Node> leaves;
-    for (const PointLight& point : lights.points()) {
-        if (glm::length(point.position - centre) > reach_m)
-            continue;
-        points_.push_back(&point);
-        leaves.push_back({point.position, 0, luminance(point.intensity), -1, -1, -1, {&point, nullptr}});
-    }
-    for (const EmissiveObject& emissive : lights.emissive()) {
-        if (glm::length(emissive.centre - centre) - emissive.radius_m > reach_m)
-            continue;
-        leaves.push_back(
-            {emissive.centre, emissive.radius_m, emissive.power, -1, -1, -1, {nullptr, &emissive}});
-    }
-    if (leaves.empty())
-        return;
-    nodes_.reserve(2 * leaves.size());
-    build(leaves, -1);
-    for (std::size_t n = 0; n < nodes_.size(); ++n) {
-        if (nodes_[n].item.emissive != nullptr)
-            leaf_of_object_.emplace_back(nodes_[n].item.emissive->object, static_cast<std::int32_t>(n));
-    }
-    std::ranges::sort(leaf_of_object_);
-}
-
-// Halves along the longest axis.
-std::int32_t LightTree::build(std::span<Node> leaves, std::int32_t parent) {
-    const auto index = static_cast<std::int32_t>(nodes_.size());
-    if (leaves.size() == 1) {
-        nodes_.push_back(leaves[0]);
-        nodes_.back().parent = parent;
-        return index;
-    }
-    map::Bounds bounds, centres;
-    Node node;
-    node.parent = parent;
-    for (const Node& leaf : leaves) {
-        bounds.extend(leaf.centre - leaf.radius_m);
-        bounds.extend(leaf.centre + leaf.radius_m);
-        centres.extend(leaf.centre);
-        node.power += leaf.power;
-    }
-    node.centre = (bounds.low + bounds.high) * 0.5f;
-    node.radius_m = glm::length(bounds.high - bounds.low) * 0.5f;
-    const glm::vec3 extent = centres.high - centres.low;
-    const glm::length_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0
-                               : extent.y >= extent.z                       ? 1
-                                                                            : 2;
-    std::ranges::stable_sort(leaves, {}, [axis](const Node& leaf) { return leaf.centre[axis]; });
-    nodes_.push_back(node);
-    const std::int32_t left = build(leaves.first(leaves.size() / 2), index),
-                       right = build(leaves.subspan(leaves.size() / 2), index);
-    nodes_[static_cast<std::size_t>(index)].left = left;
-    nodes_[static_cast<std::size_t>(index)].right = right;
-    return index;
-}
-
-float LightTree::share_of_left(const Node& node, const glm::vec3& from) const {
-    const Node& left = nodes_[static_cast<std::size_t>(node.left)];
-    const Node& right = nodes_[static_cast<std::size_t>(node.right)];
-    const auto square = [&](const Node& child) {
-        const glm::vec3 d = child.centre - from;
-        return std::max({glm::dot(d, d),
-                         child.radius_m * child.radius_m,
-                         least_light_distance_m * least_light_distance_m});
-    };
-    const float of_left = left.power * square(right), of_right = right.power * square(left);
-    // Never quite 0 or 1: no light is left out.
-    return std::clamp(of_left / (of_left + of_right), 0.01f, 0.99f);
-}
-
-LightTree::Drawn LightTree::draw(const glm::vec3& from, double u, const Roulette& roulette) const {
-    Drawn drawn;
-    drawn.probability = 1;
-    const Node* node = nodes_.data();
-    for (;;) {
-        // Given up as soon as the rest of the tree cannot matter.
-        const glm::vec3 way = node->centre - from;
-        const float squared = glm::dot(way, way);
-        if (squared > node->radius_m * node->radius_m) {
-            const float distance_m = std::max(std::sqrt(squared) - node->radius_m, least_light_distance_m);
-            const float scaled = roulette.faint * distance_m * distance_m * drawn.probability;
-            if (node->power < drawn.survival * scaled)
-                drawn.survival = node->power / scaled;
-            if (roulette.number >= drawn.survival) {
-                drawn.probability = 0;
-                return drawn;
-            }
-        }
-        if (node->left < 0)
-            break;
-        const double share = share_of_left(*node, from);
-        const bool left = u < share;
-        u = std::clamp(left ? u / share : (u - share) / (1 - share), 0.0, 1 - 0x1p-32);
-        drawn.probability *= static_cast<float>(left ? share : 1 - share);
-        node = &nodes_[static_cast<std::size_t>(left ? node->left : node->right)];
-    }
-    drawn.item = node->item;
-    drawn.rest = u;
-    return drawn;
-}
-
-LightTree::Drawn LightTree::find(const glm::vec3& from, std::uint32_t object) const {
-    const auto leaf =
-        std::ranges::lower_bound(leaf_of_object_, object, {}, &std::pair<std::uint32_t, std::int32_t>::first);
-    if (leaf == leaf_of_object_.end() || leaf->first != object)
-        return {};
-    Drawn drawn;
-    drawn.item = nodes_[static_cast<std::size_t>(leaf->second)].item;
-    drawn.probability = 1;
-    for (std::int32_t n = leaf->second; nodes_[static_cast<std::size_t>(n)].parent >= 0;) {
-        const std::int32_t parent = nodes_[static_cast<std::size_t>(n)].parent;
-        const Node& node = nodes_[static_cast<std::size_t>(parent)];
-        const float share = share_of_left(node, from);
-        drawn.probability *= n == node.left ? share : 1 - share;
-        n = parent;
-    }
-    return drawn;
 }
 
 }  // namespace drtv::bake

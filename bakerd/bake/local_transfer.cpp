@@ -14,7 +14,7 @@
 #include "bakerd/bake/local_transfer.h"
 
 #include "bakerd/bake/local_links.h"
-#include "bakerd/bake/path.h"
+#include "bakerd/bake/local_paths.h"
 
 #include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
@@ -25,18 +25,6 @@
 
 namespace drtv::bake {
 namespace {
-
-constexpr Shares all_of_it = {1, 1, 1, 1};
-
-float square(float x) {
-    return x * x;
-}
-
-// How densely a path goes on from here to its first point, by the side on which it arrives.
-void set_densities(PathEnd& end, float through_share) {
-    end.density_front = 1 - through_share;
-    end.density_back = through_share;
-}
 
 class LocalIntegrator {
   public:
@@ -107,91 +95,18 @@ class LocalIntegrator {
             work.watch->begin_probe(source_units_[p]);
         }
         const std::span<const std::uint32_t> paths = samples_.side_by_side();
+        const LocalPathStart from{scene_, samples_, settings_, positions_[p], shifts_[p]};
         for (std::uint32_t first = 0; first < samples_.count(); first += group_size) {
             std::vector<EndGroup> groups(settings_.bounces);  // by number of bounces
             const std::uint32_t end = std::min(first + group_size, samples_.count());
             for (std::uint32_t n = first; n < end; ++n)
-                trace_path(paths[n], groups, work);
+                work.brought.rays += trace_local_path(from, paths[n], groups, work.watch);
             for (std::uint32_t bounce = 0; bounce < settings_.bounces; ++bounce) {
                 if (!groups[bounce].ends.empty())
                     join_all(groups[bounce], bounce == 0, first * settings_.bounces + bounce, work);
             }
         }
         return std::move(work.brought);
-    }
-
-    void trace_path(std::uint32_t n, std::vector<EndGroup>& groups, Work& work) const {
-        const std::span<const std::uint32_t> numbers = samples_.point(n);
-        const glm::vec3& source = positions_[work.source];
-        const auto& shift = shifts_[work.source];
-        trace::Ray ray{source, uniform_sphere(shifted(numbers, shift, 0)), settings_.reach_m};
-        PathEnd end;
-        glm::vec3 carried(1);
-        float footprint_m = 0;
-        for (std::uint32_t bounce = 0; bounce < settings_.bounces; ++bounce) {
-            ++work.brought.rays;
-            const std::optional<trace::Hit> hit = scene_.closest(ray);
-            const auto watch = [&](float length_m) {
-                if (work.watch == nullptr)
-                    return;
-                // Neighbours' probes are sources too, so that not even first segments are implied.
-                const PathSegment segment{ray, length_m, all_of_it, n, false};
-                work.watch->record_segments({&segment, 1});
-            };
-            watch(hit ? hit->distance_m : ray.far_m);
-            if (!hit)
-                return;
-            footprint_m += hit->distance_m * later_footprint;
-            const trace::Surface surface = scene_.surface(*hit, footprint_m);
-            if (surface.absorbs)
-                return;
-            const std::optional<glm::vec3> before = before_surface(ray, *hit);
-            if (!before)
-                return;
-            const float share = transmitted_share(surface);
-            if (share > 0)
-                watch(end_of_beyond_surface(ray, *hit));
-            end.position = ray.origin + ray.direction * hit->distance_m;
-            end.normal = hit->normal;
-            end.before = *before;
-            end.beyond = share > 0 ? beyond_surface(scene_, ray, *hit) : std::nullopt;
-            end.albedo = carried * surface.albedo;
-            end.transmitted = carried * surface.transmitted;
-            if (bounce == 0)
-                begin_path(end, ray, *hit);
-            else
-                set_densities(end, share);
-            groups[bounce].add(end);
-            if (bounce + 1 == settings_.bounces)
-                return;
-            const glm::vec2 u = shifted(numbers, shift, 2 + 2 * std::size_t{bounce});
-            const std::optional<Scattered> next = scatter(scene_, ray, *hit, surface, u);
-            if (!next)
-                return;
-            const glm::vec3& sent_on = next->through ? surface.transmitted : surface.albedo;
-            const float probability = next->through ? share : 1 - share;
-            // The first point's own draw of a side is p's alone to make; those between, both directions
-            // share.
-            if (bounce == 0) {
-                end.density *= probability;
-                carried *= sent_on;
-            } else {
-                carried *= sent_on / probability;
-            }
-            const float far_m = exit_distance(next->origin, next->direction, source, settings_.reach_m);
-            ray = {next->origin, next->direction, far_m};
-        }
-    }
-
-    // The first point of a path.
-    static void begin_path(PathEnd& end, const trace::Ray& ray, const trace::Hit& hit) {
-        const float cosine = -glm::dot(ray.direction, hit.normal);
-        const float squared = square(hit.distance_m);
-        end.first = end.position;
-        end.to_receiver = end.density = cosine / squared;
-        end.from_light = cosine / std::max(squared, square(local_least_distance_m));
-        end.direction = irradiance_sh(ray.direction);
-        end.density_front = end.density_back = 1;
     }
 
     // One group of ends, and all other sources that it may serve.
@@ -232,7 +147,7 @@ class LocalIntegrator {
             return;
         work.watched.clear();
         for (const trace::Ray& shadow : work.shadows)
-            work.watched.push_back({shadow, all_of_it});
+            work.watched.push_back({shadow, whole_range});
         work.watch->record_shadow_rays(work.watched);
     }
 

@@ -2,6 +2,7 @@
 // surfaces.
 #pragma once
 
+#include "bakerd/bake/light_tree.h"
 #include "bakerd/bake/lights.h"
 #include "bakerd/trace/scene.h"
 

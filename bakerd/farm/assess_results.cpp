@@ -2,6 +2,7 @@
 
 #include "bakerd/bake/sector_file.h"
 #include "bakerd/reuse/assessment.h"
+#include "bakerd/reuse/describe.h"
 #include "bakerd/reuse/footprint_record.h"
 
 #include <fmt/format.h>

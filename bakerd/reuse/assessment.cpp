@@ -6,7 +6,6 @@
 #include "bakerd/reuse/placement_changes.h"
 #include "bakerd/reuse/static_gain.h"
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -230,38 +229,6 @@ float share_to_bake(const Assessment& assessment) {
     const auto over = std::ranges::count_if(assessment.probe_bounds,
                                             [&](float bound) { return bound > assessment.tolerance; });
     return static_cast<float>(over) / static_cast<float>(assessment.probe_bounds.size());
-}
-
-std::string describe(const Assessment& assessment, std::span<const Change> changes) {
-    if (!assessment.change)
-        return assessment.verdict == Verdict::rebake ? "what is kept of it may be off by more than is asked"
-                                                     : "";
-    const Change& change = changes[*assessment.change];
-    const auto how = [&]() -> std::string {
-        switch (assessment.cause) {
-            case Cause::rays: {
-                const glm::vec3 middle = (change.item().bounds.low + change.item().bounds.high) * 0.5f;
-                const auto column = [](float metres) {
-                    return static_cast<std::int32_t>(
-                        std::floor(metres / static_cast<float>(map::sector_size_m)));
-                };
-                if (assessment.weight >= unbounded)
-                    return fmt::format("rays cross column ({}, {})", column(middle.x), column(middle.y));
-                return fmt::format("rays cross column ({}, {}), weight {:.2g} %",
-                                   column(middle.x),
-                                   column(middle.y),
-                                   assessment.weight * 100);
-            }
-            case Cause::placement:
-                return "it may move probes";
-            case Cause::light:
-                return "it shines here";
-            case Cause::interior:
-                return "its probe stands here";
-        }
-        return "";
-    };
-    return fmt::format("{}: {}", describe(change), how());
 }
 
 }  // namespace drtv::reuse

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace drtv::reuse {
@@ -52,8 +51,5 @@ struct Assessment {
 
 // Of the sector's probes those that a bake cannot take over. REQUIRES: the verdict is rebake.
 [[nodiscard]] float share_to_bake(const Assessment& assessment);
-
-// "palm_017 moved: rays cross column (12, 7), weight 0.8 %".
-[[nodiscard]] std::string describe(const Assessment& assessment, std::span<const Change> changes);
 
 }  // namespace drtv::reuse

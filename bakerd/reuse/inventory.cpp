@@ -2,8 +2,6 @@
 
 #include "bakerd/reuse/record_bytes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 #include <tuple>
@@ -193,44 +191,6 @@ std::vector<Change> changes_between(const Inventory& before, const Inventory& af
         }
     }
     return changes;
-}
-
-std::string describe(const Change& change) {
-    const auto kind = [&]() -> const char* {
-        switch (change.item().kind) {
-            case ItemKind::fixed:
-            case ItemKind::vegetation:
-                return "an object";
-            case ItemKind::lamp:
-                return "a lamp";
-            case ItemKind::sun:
-                return "a sun";
-            case ItemKind::manual_probe:
-                return "a probe";
-            case ItemKind::no_probes:
-                return "a no_probes volume";
-            case ItemKind::interior:
-                return "an interior";
-        }
-        return "something";
-    };
-    const auto what = [&]() -> const char* {
-        switch (change.kind) {
-            case ChangeKind::added:
-                return "was added";
-            case ChangeKind::removed:
-                return "was deleted";
-            case ChangeKind::moved:
-                return "moved";
-            case ChangeKind::changed:
-                return "changed";
-        }
-        return "changed";
-    };
-    return fmt::format(
-        "{} {}",
-        change.item().name.empty() ? std::string(kind()) + " without a name" : change.item().name,
-        what());
 }
 
 }  // namespace drtv::reuse

@@ -55,7 +55,4 @@ struct Change {
 // In the order of kind and name.
 [[nodiscard]] std::vector<Change> changes_between(const Inventory& before, const Inventory& after);
 
-// "palm_017 moved".
-[[nodiscard]] std::string describe(const Change& change);
-
 }  // namespace drtv::reuse

@@ -2,6 +2,7 @@
 // its bound.
 #include "bakerd/reuse/assessment.h"
 
+#include "bakerd/reuse/describe.h"
 #include "bakerd/reuse/footprint_record.h"
 #include "bakerd/reuse/rebake.h"
 #include "tests/bake/worlds.h"
