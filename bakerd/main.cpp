@@ -19,7 +19,9 @@
 namespace {
 
 struct ServeOptions {
-    std::string data, listen = "127.0.0.1:7447", executor = "local";
+    std::string data;
+    std::string listen = "127.0.0.1:7447";
+    std::string executor = "local";
     int threads = 0;
     std::int64_t cache_bytes = drtv::farm::Farm::Options{}.cache_bytes;
     drtv::service::TlsFiles tls;

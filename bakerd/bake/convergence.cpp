@@ -6,10 +6,12 @@
 namespace drtv::bake {
 
 double relative_error(const BlockMeans& means) {
-    double variance = 0, total = 0;
+    double variance = 0;
+    double total = 0;
     for (std::size_t c = 0; c < channel_count; ++c) {
         for (std::size_t b = 0; b < basis_count; ++b) {
-            double sum = 0, squares = 0;
+            double sum = 0;
+            double squares = 0;
             for (const auto& block : means) {
                 sum += block[c][b];
                 squares += block[c][b] * block[c][b];

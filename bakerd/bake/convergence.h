@@ -29,7 +29,9 @@ using BlockMeans =
 
 // Median, 95th percentile and maximum; zeros of nothing.
 struct ErrorSummary {
-    float median = 0, p95 = 0, max = 0;
+    float median = 0;
+    float p95 = 0;
+    float max = 0;
 };
 [[nodiscard]] ErrorSummary summarise(std::vector<float> errors);
 

@@ -56,7 +56,8 @@ const map::ManualProbe* probe_of(const map::Map& map,
 tl::expected<Interior, std::string> store_mesh(const std::string& name,
                                                const placement::ClosedVolume& closed) {
     const std::vector<glm::dvec3> vertices = closed.vertices();
-    std::array<std::int64_t, 3> low{}, high{};
+    std::array<std::int64_t, 3> low{};
+    std::array<std::int64_t, 3> high{};
     for (glm::length_t axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<std::size_t>(axis);
         const auto [least, most] =
@@ -82,8 +83,8 @@ tl::expected<Interior, std::string> store_mesh(const std::string& name,
     const auto index = [&](std::uint32_t vertex) {
         std::array<std::uint16_t, 3> steps{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::int64_t offset = units(vertices[vertex][static_cast<glm::length_t>(axis)]) - low[axis],
-                               half = interior.shift == 0 ? 0 : std::int64_t{1} << (interior.shift - 1);
+            const std::int64_t offset = units(vertices[vertex][static_cast<glm::length_t>(axis)]) - low[axis];
+            const std::int64_t half = interior.shift == 0 ? 0 : std::int64_t{1} << (interior.shift - 1);
             steps[axis] = static_cast<std::uint16_t>((offset + half) >> interior.shift);
         }
         const auto [entry, added] = index_of.try_emplace(steps, interior.vertices.size());
@@ -113,7 +114,8 @@ tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
     auto stored = store_mesh(volume.name, closed);
     if (!stored)
         return tl::unexpected(stored.error());
-    glm::dvec3 low = volume.positions.front(), high = low;
+    glm::dvec3 low = volume.positions.front();
+    glm::dvec3 high = low;
     for (const glm::dvec3& position : volume.positions) {
         low = glm::min(low, position);
         high = glm::max(high, position);

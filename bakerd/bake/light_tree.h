@@ -16,7 +16,8 @@ namespace drtv::bake {
 // when the number in [0, 1) is below its share of that. Then it counts as if it brought that much, so that
 // nothing is lost on average. A faint of 0 keeps all.
 struct Roulette {
-    float number = 0, faint = 0;
+    float number = 0;
+    float faint = 0;
 };
 
 // The lights that a probe can know of, in a tree from which one is drawn with a probability that falls with

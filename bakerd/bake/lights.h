@@ -47,7 +47,8 @@ struct Sun {
 // One object with emissive triangles; these are drawn by area times emission.
 struct EmissiveObject {
     struct Triangle {
-        std::uint32_t primitive, triangle;
+        std::uint32_t primitive;
+        std::uint32_t triangle;
         glm::vec3 a, b, c;  // world, counter-clockwise seen from the front
         bool both_sides;
         float share;         // the probability of being drawn

@@ -17,7 +17,9 @@ constexpr int least_exponent = -60;  // of a source or of a receiver; no light i
 constexpr int significant_bits = 8;
 
 std::int64_t square_distance(const placement::Position& a, const placement::Position& b) {
-    const std::int64_t x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+    const std::int64_t x = a.x - b.x;
+    const std::int64_t y = a.y - b.y;
+    const std::int64_t z = a.z - b.z;
     return x * x + y * y + z * z;
 }
 
@@ -63,7 +65,8 @@ void round_codes(LightCodes& codes) {
     }
     const int shift =
         std::max(static_cast<int>(std::bit_width(static_cast<unsigned>(most))) - significant_bits, 0);
-    const int step = 1 << shift, largest = INT16_MAX / step * step;
+    const int step = 1 << shift;
+    const int largest = INT16_MAX / step * step;
     for (auto& channel : codes) {
         for (std::size_t i = 0; i < sh_count; ++i) {
             const int magnitude = std::abs(int{channel[i]});
@@ -97,7 +100,8 @@ LocalSources local_sources(const PlacedSector& placed,
         return sources;
     struct Candidate {
         std::int64_t square;
-        std::int32_t dj, di;
+        std::int32_t dj;
+        std::int32_t di;
         std::uint32_t probe;
         placement::Position position;
     };

@@ -39,12 +39,14 @@ std::optional<Incident> NextEvent::draw(const glm::vec3& from,
         triangles, static_cast<float>(drawn.rest), {}, &EmissiveObject::Triangle::share_before);
     const EmissiveObject::Triangle& triangle = *(after == triangles.begin() ? after : after - 1);
     // Uniform on the triangle.
-    const float root = std::sqrt(static_cast<float>(u[1])), weight_b = root * (1 - static_cast<float>(u[2])),
-                weight_c = root * static_cast<float>(u[2]);
+    const float root = std::sqrt(static_cast<float>(u[1]));
+    const float weight_b = root * (1 - static_cast<float>(u[2]));
+    const float weight_c = root * static_cast<float>(u[2]);
     const glm::vec3 point = triangle.a * (1 - root) + triangle.b * weight_b + triangle.c * weight_c;
-    const glm::vec3 to_light = point - from,
-                    normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
-    const float distance_m = glm::length(to_light), double_area_m2 = glm::length(normal);
+    const glm::vec3 to_light = point - from;
+    const glm::vec3 normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
+    const float distance_m = glm::length(to_light);
+    const float double_area_m2 = glm::length(normal);
     if (!(distance_m > 0) || !(double_area_m2 > 0) || glm::length(point - probe_) > reach_m_)
         return std::nullopt;
     const glm::vec3 direction = to_light / distance_m;
@@ -55,7 +57,8 @@ std::optional<Incident> NextEvent::draw(const glm::vec3& from,
     const map::Object& object = lights_.map().objects[drawn.item.emissive->object];
     const map::Primitive& primitive = lights_.map().meshes[object.mesh].primitives[triangle.primitive];
     const bool mirrored = glm::determinant(glm::mat3(object.world_from_object)) < 0;
-    const float u_weight = mirrored ? weight_c : weight_b, v_weight = mirrored ? weight_b : weight_c;
+    const float u_weight = mirrored ? weight_c : weight_b;
+    const float v_weight = mirrored ? weight_b : weight_c;
     if (!trace::is_there(lights_.map(), primitive, triangle.triangle, u_weight, v_weight))
         return std::nullopt;
     const float magnitude = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), 1.0f});

@@ -58,7 +58,8 @@ float exit_distance(const glm::vec3& origin,
                     const glm::vec3& centre,
                     float radius) {
     const glm::vec3 m = origin - centre;
-    const float b = glm::dot(m, direction), c = glm::dot(m, m) - radius * radius;
+    const float b = glm::dot(m, direction);
+    const float c = glm::dot(m, m) - radius * radius;
     return c >= 0 ? 0 : -b + std::sqrt(b * b - c);
 }
 

@@ -34,7 +34,8 @@ inline constexpr float first_footprint = 1 / 16.0f, later_footprint = 1 / 4.0f;
                                   float radius);
 
 struct Scattered {
-    glm::vec3 origin, direction;
+    glm::vec3 origin;
+    glm::vec3 direction;
     glm::vec3 weight;  // what radiance from `direction` counts
     float density;     // per steradian, of the direction
     bool through;      // to the other side of the surface

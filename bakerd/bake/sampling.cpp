@@ -11,7 +11,8 @@ namespace {
 
 // Joe and Kuo 2008, new-joe-kuo-6: degree, coefficients and initial direction numbers of dimensions 2 to 18.
 struct Polynomial {
-    std::uint32_t degree, coefficients;
+    std::uint32_t degree;
+    std::uint32_t coefficients;
     std::array<std::uint32_t, 7> m;
 };
 constexpr std::array<Polynomial, max_sample_dimensions - 1> polynomials = {{
@@ -78,7 +79,8 @@ std::uint32_t owen_scramble(std::uint32_t word, std::uint32_t dimension) {
 // Cosine and sine of 2 pi u, u in [0, 1): Taylor series within an eighth of a turn, error below 2^-23.
 glm::vec2 cos_sin_turn(float u) {
     const float quarter = std::floor(u * 4 + 0.5f);
-    const float x = (u - quarter * 0.25f) * 6.28318530717958648f, x2 = x * x;
+    const float x = (u - quarter * 0.25f) * 6.28318530717958648f;
+    const float x2 = x * x;
     const float s =
         x * (1 + x2 * (-1 / 6.0f + x2 * (1 / 120.0f + x2 * (-1 / 5040.0f + x2 * (1 / 362880.0f)))));
     const float c = 1 + x2 * (-0.5f + x2 * (1 / 24.0f + x2 * (-1 / 720.0f + x2 * (1 / 40320.0f))));
@@ -163,11 +165,13 @@ glm::vec3 uniform_sphere(glm::vec2 u) {
 }
 
 glm::vec3 cosine_hemisphere(glm::vec2 u, const glm::vec3& normal) {
-    const float r = std::sqrt(u.x), z = std::sqrt(std::max(0.0f, 1 - u.x));
+    const float r = std::sqrt(u.x);
+    const float z = std::sqrt(std::max(0.0f, 1 - u.x));
     const glm::vec2 turn = cos_sin_turn(u.y);
     // An orthonormal basis without branches (Duff et al. 2017).
     const float sign = std::copysign(1.0f, normal.z);
-    const float a = -1 / (sign + normal.z), b = normal.x * normal.y * a;
+    const float a = -1 / (sign + normal.z);
+    const float b = normal.x * normal.y * a;
     const glm::vec3 tangent(1 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
     const glm::vec3 bitangent(b, sign + normal.y * normal.y * a, -normal.y);
     return tangent * (r * turn.x) + bitangent * (r * turn.y) + normal * z;

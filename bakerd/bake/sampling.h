@@ -42,7 +42,8 @@ class SampleTable {
     [[nodiscard]] std::uint64_t place_of(std::uint32_t n) const;
     void put_side_by_side();
 
-    std::uint32_t count_, dimensions_;
+    std::uint32_t count_;
+    std::uint32_t dimensions_;
     std::vector<std::uint32_t> words_;  // fixed point, 32 bits after the point
     std::vector<std::uint32_t> order_;
 };

@@ -72,11 +72,13 @@ class World {
     };
     struct PlacementKey {
         map::SectorCoordinate sector;
-        float reach_m, min_distance_m;
+        float reach_m;
+        float min_distance_m;
         bool operator==(const PlacementKey&) const = default;
     };
     struct SampleKey {
-        std::uint32_t count, dimensions;
+        std::uint32_t count;
+        std::uint32_t dimensions;
         bool operator==(const SampleKey&) const = default;
     };
     World(std::shared_ptr<const trace::Device> device,

@@ -97,7 +97,9 @@ class Cells {
 
     glm::vec3 origin_, direction_;  // in cells
     float top_;
-    __m256i pitch_, block_columns_, block_layers_;
+    __m256i pitch_;
+    __m256i block_columns_;
+    __m256i block_layers_;
 };
 
 }  // namespace

@@ -27,7 +27,9 @@ inline constexpr std::uint32_t footprint_version = 4;
 struct ProbeRecord {
     placement::Position position{};
     // Its share of the file's statistics.
-    std::uint32_t rays = 0, shadow_rays = 0, back_hits = 0;
+    std::uint32_t rays = 0;
+    std::uint32_t shadow_rays = 0;
+    std::uint32_t back_hits = 0;
     float error = 0;
     // Of its paths' weight, what may have changed since it was baked; above 0 of one that was taken over from
     // another map within a tolerance. Times the gain it bounds how far its coefficients are off.

@@ -174,7 +174,8 @@ std::optional<Inventory> decode_inventory(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<Change> changes_between(const Inventory& before, const Inventory& after) {
-    std::vector<Item> gone = only_in(before.items, after.items), come = only_in(after.items, before.items);
+    std::vector<Item> gone = only_in(before.items, after.items);
+    std::vector<Item> come = only_in(after.items, before.items);
     std::ranges::stable_sort(gone, {}, identity);
     std::ranges::stable_sort(come, {}, identity);
     std::vector<Change> changes;

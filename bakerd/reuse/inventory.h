@@ -47,7 +47,8 @@ enum class ChangeKind : std::uint8_t { added, removed, moved, changed };
 // One thing that is not the same in both maps; what has the same kind and name on both sides is one.
 struct Change {
     ChangeKind kind = ChangeKind::changed;
-    std::optional<Item> before, after;
+    std::optional<Item> before;
+    std::optional<Item> after;
 
     [[nodiscard]] const Item& item() const { return after ? *after : *before; }
 };

@@ -18,7 +18,8 @@ constexpr float least_distance_m = 0.001f;
 
 // Of light of that radiance at each of so many points of a path.
 float of_path(float radiance, float scattered, std::uint32_t points) {
-    float sum = 0, left = 1;
+    float sum = 0;
+    float left = 1;
     for (std::uint32_t point = 0; point < points; ++point, left *= scattered)
         sum += left;
     return sum * radiance / bake::static_irradiance_range;
@@ -39,7 +40,8 @@ float irradiance(const NearLamp& lamp, float distance_m) {
 // half way from that to each other.
 float most_irradiance(const std::vector<NearLamp>& lamps) {
     constexpr std::size_t most_in_pairs = 2048;
-    float most = 0, sum = 0;
+    float most = 0;
+    float sum = 0;
     for (const NearLamp& lamp : lamps)
         sum += irradiance(lamp, lamp.distance_m);
     if (lamps.size() > most_in_pairs)
@@ -76,7 +78,8 @@ float static_gain(const bake::StaticLights& lights,
                  bake::brightest(lamp.intensity),
                  std::max(scene.distance_to_surface(lamp.position, settings.reach_m), least_distance_m)});
     }
-    float irradiance = most_irradiance(lamps), emitted = 0;
+    float irradiance = most_irradiance(lamps);
+    float emitted = 0;
     for (const bake::Sun& sun : lights.suns())
         irradiance += bake::brightest(sun.irradiance);
     for (const bake::EmissiveObject& emissive : lights.emissive()) {

@@ -24,7 +24,8 @@ namespace drtv::service {
 // A list request's page: where it starts (the number in its token, `start` without one) and how many it
 // holds.
 struct Page {
-    std::int64_t from = 0, size = 0;
+    std::int64_t from = 0;
+    std::int64_t size = 0;
 };
 [[nodiscard]] farm::Result<Page> page_of(const std::string& token,
                                          std::int32_t size,

@@ -46,7 +46,9 @@ float order_of(const TriangleSet& set,
     if (!in_world_space)
         return order_of(at, ray, world_from_object, corners);
     const Triangle world = transformed(world_from_object, corners);
-    const glm::vec3 a(world.a), b(world.b), c(world.c);
+    const glm::vec3 a(world.a);
+    const glm::vec3 b(world.b);
+    const glm::vec3 c(world.c);
     return order_of(at, ray, glm::mat4x3(1), {a, b, c});
 }
 
@@ -99,8 +101,9 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
     }
     const EmbreeHit offered = embree_hit(*args, set, 1, 0);
     if (!set.mixed && is_sure(ray, offered)) {
-        const float doubt_m = query_slack(ray, offered.distance_m) * 0.5f,
-                    least_m = offered.distance_m - doubt_m, most_m = offered.distance_m + doubt_m;
+        const float doubt_m = query_slack(ray, offered.distance_m) * 0.5f;
+        const float least_m = offered.distance_m - doubt_m;
+        const float most_m = offered.distance_m + doubt_m;
         if (least_m > query.best.most_m)
             return;
         if (most_m < query.best.least_m) {

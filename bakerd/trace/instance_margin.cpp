@@ -28,7 +28,8 @@ float instance_margin_m(const map::Map& map) {
 }
 
 std::optional<InstanceShape> instance_shape(const glm::mat4x3& world_from_object, float margin_m) {
-    constexpr float largest_spread = 0x1p10f, least_stretch = 0x1p-4f;
+    constexpr float largest_spread = 0x1p10f;
+    constexpr float least_stretch = 0x1p-4f;
     glm::vec3 lengths;
     glm::mat3 axes;
     for (glm::length_t k = 0; k < 3; ++k) {
@@ -40,12 +41,14 @@ std::optional<InstanceShape> instance_shape(const glm::mat4x3& world_from_object
     // The squares of the factors by which the unit axes stretch lie around 1, no farther than these sums
     // (Gershgorin): 0 where the axes are orthogonal. A box whose corners are moved by the margin along each
     // axis grows by that times the least factor.
-    const float xy = std::abs(glm::dot(axes[0], axes[1])), yz = std::abs(glm::dot(axes[1], axes[2])),
-                zx = std::abs(glm::dot(axes[2], axes[0]));
+    const float xy = std::abs(glm::dot(axes[0], axes[1]));
+    const float yz = std::abs(glm::dot(axes[1], axes[2]));
+    const float zx = std::abs(glm::dot(axes[2], axes[0]));
     const float around = std::max({xy + zx, xy + yz, yz + zx});
     if (!(1 - around >= least_stretch))
         return std::nullopt;
-    const float least = std::sqrt(1 - around), most = std::sqrt(1 + around);
+    const float least = std::sqrt(1 - around);
+    const float most = std::sqrt(1 + around);
     const float spread = most / least * std::max({lengths.x, lengths.y, lengths.z}) /
                          std::min({lengths.x, lengths.y, lengths.z});
     if (!(spread <= largest_spread))

@@ -74,7 +74,9 @@ inline void set_ray(RTCRayHit& r, const glm::vec3& origin, const glm::vec3& dire
 // Which triangle, in Embree's numbers: instance in the scene, triangle set of its mesh, triangle of the set.
 // All three follow the order of the content (TriangleSet), so that the smaller one does too.
 struct TriangleId {
-    std::uint32_t instance = 0, set = 0, triangle = 0;
+    std::uint32_t instance = 0;
+    std::uint32_t set = 0;
+    std::uint32_t triangle = 0;
     auto operator<=>(const TriangleId&) const = default;
 };
 

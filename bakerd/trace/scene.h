@@ -50,7 +50,8 @@ struct ColumnHit {
 
 // Square of the world, metres.
 struct Region {
-    glm::vec2 low, high;
+    glm::vec2 low;
+    glm::vec2 high;
 };
 
 class Scene {

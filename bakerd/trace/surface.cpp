@@ -36,7 +36,8 @@ std::uint32_t mip_level(const map::Texture& texture,
                         const std::array<glm::vec2, 3>& uvs,
                         float double_area_m2,
                         float footprint_m) {
-    const glm::vec2 a = uvs[1] - uvs[0], b = uvs[2] - uvs[0];
+    const glm::vec2 a = uvs[1] - uvs[0];
+    const glm::vec2 b = uvs[2] - uvs[0];
     const float double_texels = std::abs(a.x * b.y - a.y * b.x) * static_cast<float>(texture.width) *
                                 static_cast<float>(texture.height);
     const float ratio = std::min(footprint_m * footprint_m / double_area_m2,
@@ -115,16 +116,19 @@ Presence presence_of(const map::Map& map, const map::Primitive& primitive, std::
     if (material.alpha_mode == map::AlphaMode::opaque)
         return Presence::whole;
     const glm::uvec3& t = primitive.triangles[triangle];
-    float low = material.base_colour.w, high = low;
+    float low = material.base_colour.w;
+    float high = low;
     if (!primitive.colours.empty()) {
-        const float a = primitive.colours[t.x].w, b = primitive.colours[t.y].w, c = primitive.colours[t.z].w;
+        const float a = primitive.colours[t.x].w;
+        const float b = primitive.colours[t.y].w;
+        const float c = primitive.colours[t.z].w;
         low *= std::min({a, b, c});
         high *= std::max({a, b, c});
     }
     if (material.base_texture.present()) {
-        const glm::vec2 a = viewed(material.base_texture, primitive.uvs[t.x]),
-                        b = viewed(material.base_texture, primitive.uvs[t.y]),
-                        c = viewed(material.base_texture, primitive.uvs[t.z]);
+        const glm::vec2 a = viewed(material.base_texture, primitive.uvs[t.x]);
+        const glm::vec2 b = viewed(material.base_texture, primitive.uvs[t.y]);
+        const glm::vec2 c = viewed(material.base_texture, primitive.uvs[t.z]);
         const map::AlphaRange range = map::alpha_range(map.textures[material.base_texture.texture],
                                                        glm::min(glm::min(a, b), c),
                                                        glm::max(glm::max(a, b), c));

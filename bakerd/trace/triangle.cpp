@@ -19,12 +19,16 @@ Double4 four(const glm::vec3& v) {
 }
 
 struct WorldCorners {
-    Double4 a, b, c;
+    Double4 a;
+    Double4 b;
+    Double4 c;
 };
 
 WorldCorners in_world(const glm::mat4x3& world_from_object, const ObjectTriangle& triangle) {
-    const Double4 x = four(world_from_object[0]), y = four(world_from_object[1]),
-                  z = four(world_from_object[2]), origin = four(world_from_object[3]);
+    const Double4 x = four(world_from_object[0]);
+    const Double4 y = four(world_from_object[1]);
+    const Double4 z = four(world_from_object[2]);
+    const Double4 origin = four(world_from_object[3]);
     const auto corner = [&](const glm::vec3& p) {
         return (x * double{p.x} + y * double{p.y}) + (z * double{p.z} + origin);
     };
@@ -65,15 +69,19 @@ std::optional<Intersection> intersect(const Ray& ray,
                                       const glm::mat4x3& world_from_object,
                                       const ObjectTriangle& triangle) {
     const WorldCorners corners = in_world(world_from_object, triangle);
-    const Double4 direction = four(ray.direction), a = corners.a - four(ray.origin),
-                  ab = corners.b - corners.a, ac = corners.c - corners.a;
-    const Double4 normal = cross(ab, ac), moment = cross(a, direction);
+    const Double4 direction = four(ray.direction);
+    const Double4 a = corners.a - four(ray.origin);
+    const Double4 ab = corners.b - corners.a;
+    const Double4 ac = corners.c - corners.a;
+    const Double4 normal = cross(ab, ac);
+    const Double4 moment = cross(a, direction);
     const Double4 products = sums(normal * direction, normal * a, ac * moment, ab * moment);
     const double facing = products[0];
     if (facing == 0)
         return std::nullopt;
     const Double4 quotients = products / facing;
-    const double u = std::clamp(quotients[2], 0.0, 1.0), v = std::clamp(-quotients[3], 0.0, 1.0 - u);
+    const double u = std::clamp(quotients[2], 0.0, 1.0);
+    const double v = std::clamp(-quotients[3], 0.0, 1.0 - u);
 
     Intersection found;
     found.distance_m = std::max(quotients[1], 0.0);
@@ -83,7 +91,9 @@ std::optional<Intersection> intersect(const Ray& ray,
     if (square(facing) < flat_grazing * glm::dot(found.normal, found.normal)) {
         // Beside the triangle its plane may be anywhere: not beyond what the corners span.
         const Double4 along = sums(a * direction, ab * direction, ac * direction, a);
-        const double of_a_m = along[0], of_b_m = of_a_m + along[1], of_c_m = of_a_m + along[2];
+        const double of_a_m = along[0];
+        const double of_b_m = of_a_m + along[1];
+        const double of_c_m = of_a_m + along[2];
         found.distance_m = std::max(
             std::clamp(quotients[1], std::min({of_a_m, of_b_m, of_c_m}), std::max({of_a_m, of_b_m, of_c_m})),
             0.0);
@@ -97,13 +107,16 @@ float order_of(const Intersection& at,
                const ObjectTriangle& triangle) {
     const double slack_m = static_cast<double>(query_slack(ray, static_cast<float>(at.distance_m)));
     const glm::dmat3 space_from_world = glm::inverse(glm::dmat3(glm::mat3(world_from_space)));
-    const glm::dvec3 a(triangle.a), b(triangle.b), c(triangle.c), normal = glm::abs(glm::cross(b - a, c - a));
+    const glm::dvec3 a(triangle.a);
+    const glm::dvec3 b(triangle.b);
+    const glm::dvec3 c(triangle.c);
+    const glm::dvec3 normal = glm::abs(glm::cross(b - a, c - a));
     const double facing =
         std::abs(glm::dot(glm::cross(b - a, c - a), space_from_world * glm::dvec3(ray.direction)));
     // Along each axis of the space the transform rounds coordinates of the world, and the test those of the
     // corners.
-    const glm::dvec3 translation = glm::abs(glm::dvec3(world_from_space[3])),
-                     corners = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
+    const glm::dvec3 translation = glm::abs(glm::dvec3(world_from_space[3]));
+    const glm::dvec3 corners = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
     const double world_m = static_cast<double>(coordinate_m(ray)) + at.distance_m +
                            std::max({translation.x, translation.y, translation.z});
     double error = 0;
@@ -128,16 +141,26 @@ std::optional<double> height_at(const Triangle& triangle, glm::vec2 at) {
 // Ericson, Real-Time Collision Detection, 5.1.5: by the regions of the corners, edges and face.
 double distance_to(const Triangle& triangle, const glm::dvec3& point) {
     const auto& [a, b, c] = triangle;
-    const glm::dvec3 ab = b - a, ac = c - a, ap = point - a, bp = point - b, cp = point - c;
-    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp),
-                 d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    const glm::dvec3 ab = b - a;
+    const glm::dvec3 ac = c - a;
+    const glm::dvec3 ap = point - a;
+    const glm::dvec3 bp = point - b;
+    const glm::dvec3 cp = point - c;
+    const double d1 = glm::dot(ab, ap);
+    const double d2 = glm::dot(ac, ap);
+    const double d3 = glm::dot(ab, bp);
+    const double d4 = glm::dot(ac, bp);
+    const double d5 = glm::dot(ab, cp);
+    const double d6 = glm::dot(ac, cp);
     if (d1 <= 0 && d2 <= 0)
         return glm::length(ap);
     if (d3 >= 0 && d4 <= d3)
         return glm::length(bp);
     if (d6 >= 0 && d5 <= d6)
         return glm::length(cp);
-    const double of_a = d3 * d6 - d5 * d4, of_b = d5 * d2 - d1 * d6, of_c = d1 * d4 - d3 * d2;
+    const double of_a = d3 * d6 - d5 * d4;
+    const double of_b = d5 * d2 - d1 * d6;
+    const double of_c = d1 * d4 - d3 * d2;
     if (of_c <= 0 && d1 >= 0 && d3 <= 0)
         return glm::length(ap - ab * (d1 / (d1 - d3)));
     if (of_b <= 0 && d2 >= 0 && d6 <= 0)

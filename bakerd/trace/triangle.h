@@ -18,7 +18,9 @@ namespace drtv::trace {
 
 // World, metres; counter-clockwise seen from the front unless the transform mirrored.
 struct Triangle {
-    glm::dvec3 a, b, c;
+    glm::dvec3 a;
+    glm::dvec3 b;
+    glm::dvec3 c;
 };
 
 // Corners in object space, as the map has them.
@@ -83,8 +85,8 @@ struct EmbreeHit {
     const float transformed =
         2 * hit.spread * ((coordinate_m(ray) + hit.distance_m) * speed + hit.farthest_coordinate);
     const float error = (hit.distance_m * speed + hit.longest_edge + transformed) * embree_rounding;
-    const float facing = std::abs(dot(hit.normal, hit.direction)),
-                allowed = query_slack(ray, hit.distance_m) * 0.5f * facing;
+    const float facing = std::abs(dot(hit.normal, hit.direction));
+    const float allowed = query_slack(ray, hit.distance_m) * 0.5f * facing;
     // Squares, without root and division. The normal itself must be more than rounding.
     return error * error * dot(hit.normal, hit.normal) <= allowed * allowed &&
            error * 8 * hit.longest_edge <= facing;

@@ -128,7 +128,8 @@ void attach(RTCDeviceTy* device,
         for (glm::length_t k = 0; k < 3; ++k)
             marked[primitive.triangles[set.triangle_of(n)][k]] = true;
     }
-    std::vector<std::uint32_t> used, number(primitive.positions.size());
+    std::vector<std::uint32_t> used;
+    std::vector<std::uint32_t> number(primitive.positions.size());
     for (std::uint32_t n = 0; n < marked.size(); ++n) {
         number[n] = static_cast<std::uint32_t>(used.size());
         if (marked[n])

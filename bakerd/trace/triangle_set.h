@@ -32,7 +32,8 @@ struct TriangleSet {
     // Of a one-sided set, by its triangle: the one of the same mesh that has the same corners and looks the
     // other way. Thin things are often modelled so. Empty where there are none at all.
     struct Twin {
-        std::uint32_t primitive = UINT32_MAX, triangle = 0;
+        std::uint32_t primitive = UINT32_MAX;
+        std::uint32_t triangle = 0;
         std::uint8_t first = 0;  // the twin's corner that is this one's first
         [[nodiscard]] bool present() const { return primitive != UINT32_MAX; }
     };
