@@ -33,17 +33,20 @@ inline void append_le(std::vector<std::uint8_t>& bytes, Unsigned value) {
     }
 }
 
-[[nodiscard]] inline std::int16_t load_i16(std::span<const std::uint8_t> b, std::size_t o) {
-    return static_cast<std::int16_t>(load_le<std::uint16_t>(b, o));
+[[nodiscard]] inline std::int8_t load_i8(std::span<const std::uint8_t> bytes, std::size_t offset) {
+    return static_cast<std::int8_t>(bytes[offset]);
 }
-[[nodiscard]] inline std::int32_t load_i32(std::span<const std::uint8_t> b, std::size_t o) {
-    return static_cast<std::int32_t>(load_le<std::uint32_t>(b, o));
+[[nodiscard]] inline std::int16_t load_i16(std::span<const std::uint8_t> bytes, std::size_t offset) {
+    return static_cast<std::int16_t>(load_le<std::uint16_t>(bytes, offset));
 }
-[[nodiscard]] inline float load_f32(std::span<const std::uint8_t> b, std::size_t o) {
-    return std::bit_cast<float>(load_le<std::uint32_t>(b, o));
+[[nodiscard]] inline std::int32_t load_i32(std::span<const std::uint8_t> bytes, std::size_t offset) {
+    return static_cast<std::int32_t>(load_le<std::uint32_t>(bytes, offset));
 }
-inline void append_f32(std::vector<std::uint8_t>& b, float value) {
-    append_le(b, std::bit_cast<std::uint32_t>(value));
+[[nodiscard]] inline float load_f32(std::span<const std::uint8_t> bytes, std::size_t offset) {
+    return std::bit_cast<float>(load_le<std::uint32_t>(bytes, offset));
+}
+inline void append_f32(std::vector<std::uint8_t>& bytes, float value) {
+    append_le(bytes, std::bit_cast<std::uint32_t>(value));
 }
 
 [[nodiscard]] inline bool all_zero(std::span<const std::uint8_t> bytes) {

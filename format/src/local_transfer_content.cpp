@@ -1,0 +1,208 @@
+#include "local_transfer_content.h"
+
+#include "bytes.h"
+#include "section_refusal.h"
+
+#include <drtv/sector.h>
+
+#include <bit>
+#include <cstdlib>
+
+namespace drtv {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+using Local = layout::LocalTransferLayout;
+
+// What the header says, beside the section.
+struct Content {
+    const Section& section;
+    Bytes raw;
+    std::size_t probes;
+    std::size_t sources;
+    std::size_t pairs;
+    std::size_t mask_bytes;
+    Local parts;
+};
+
+Content content_of(const Section& section, std::size_t probes) {
+    const Bytes raw = section.raw;
+    const std::size_t sources = load_le<std::uint16_t>(raw, Local::source_count);
+    const std::size_t pairs = load_le<std::uint32_t>(raw, Local::pair_count);
+    const std::size_t mask_bytes = Local::mask_bytes(sources);
+    return {section, raw, probes, sources, pairs, mask_bytes, Local(probes, sources, pairs)};
+}
+
+ReadStatus check_padding(const Content& content, std::size_t start, std::size_t end, const char* part) {
+    if (all_zero(content.raw.subspan(start, end - start)))
+        return {};
+    return refuse(
+        content.section, start, "local transfer section: the padding behind the ", part, " is not zero");
+}
+
+// Afterwards all parts of the section lie inside it.
+ReadStatus check_header(const Content& content) {
+    const auto& [section, raw, probes, sources, pairs, mask_bytes, parts] = content;
+    if (sources > max_probes) {
+        return refuse(section,
+                      Local::source_count,
+                      "local transfer section: ",
+                      sources,
+                      " sources are over the limit of 255");
+    }
+    const auto said_mask_bytes = load_le<std::uint16_t>(raw, Local::mask_size);
+    if (said_mask_bytes != mask_bytes) {
+        return refuse(section,
+                      Local::mask_size,
+                      "local transfer section: masks of ",
+                      said_mask_bytes,
+                      " bytes, must be of ",
+                      mask_bytes,
+                      " for ",
+                      sources,
+                      " sources");
+    }
+    if (!all_zero(raw.subspan(Local::reserved, Local::header_bytes - Local::reserved))) {
+        return refuse(
+            section, Local::reserved, "local transfer section: reserved bytes of its header are not zero");
+    }
+    // The first half, so that no product overflows where size_t has 32 bits.
+    if (pairs > probes * sources || parts.end != raw.size()) {
+        return refuse(section,
+                      Local::pair_count,
+                      "local transfer section has ",
+                      raw.size(),
+                      " bytes, must have ",
+                      parts.end,
+                      " for ",
+                      sources,
+                      " sources and ",
+                      pairs,
+                      " pairs");
+    }
+    return {};
+}
+
+ReadStatus check_source(const Content& content, std::size_t s) {
+    const std::size_t at = Local::source_at(s);
+    const std::int8_t di = load_i8(content.raw, at);
+    const std::int8_t dj = load_i8(content.raw, at + 1);
+    if (std::abs(di) > 1 || std::abs(dj) > 1) {
+        return refuse(content.section,
+                      at,
+                      "local source ",
+                      s,
+                      " stands in the sector (",
+                      di,
+                      ", ",
+                      dj,
+                      ") away, which is not a neighbour");
+    }
+    // How many probes a neighbour has is not known here.
+    const bool own = di == 0 && dj == 0;
+    const std::size_t probes = own ? content.probes : max_probes;
+    const std::uint8_t probe = content.raw[at + 2];
+    if (probe < probes)
+        return {};
+    return refuse(content.section,
+                  at + 2,
+                  "local source ",
+                  s,
+                  " is probe ",
+                  probe,
+                  ", its sector has at most ",
+                  probes);
+}
+
+ReadStatus check_sources(const Content& content) {
+    for (std::size_t s = 0; s < content.sources; ++s) {
+        if (ReadStatus status = check_source(content, s); !status.ok())
+            return status;
+    }
+    return check_padding(content, content.parts.sources_end, content.parts.receivers, "sources");
+}
+
+std::size_t count_bits(Bytes mask) {
+    int count = 0;
+    for (std::size_t at = 0; at < mask.size(); at += sizeof(std::uint64_t))
+        count += std::popcount(load_le<std::uint64_t>(mask, at));
+    return static_cast<std::size_t>(count);
+}
+
+// The first bit that is set from `start` on; the number of bits where there is none.
+std::size_t find_bit(Bytes mask, std::size_t start) {
+    std::size_t below = start % 8;  // bits of the first byte that do not count
+    for (std::size_t n = start / 8; n < mask.size(); ++n) {
+        const unsigned bits = unsigned{mask[n]} >> below << below;
+        if (bits != 0)
+            return 8 * n + static_cast<std::size_t>(std::countr_zero(bits));
+        below = 0;
+    }
+    return 8 * mask.size();
+}
+
+// Adds the receiver's pairs to `pairs`, which is the number of those before it.
+ReadStatus check_receiver(const Content& content, std::size_t p, std::size_t& pairs) {
+    const auto& [section, raw, probes, sources, said_pairs, mask_bytes, parts] = content;
+    const std::size_t at = parts.receiver_at(p);
+    if (!all_zero(raw.subspan(at + 5, 3)))
+        return refuse(section, at + 5, "local receiver ", p, ": its reserved bytes are not zero");
+    const auto first_pair = load_le<std::uint32_t>(raw, at);
+    if (first_pair != pairs) {
+        return refuse(section,
+                      at,
+                      "local receiver ",
+                      p,
+                      " begins at pair ",
+                      first_pair,
+                      ", the masks before it have ",
+                      pairs);
+    }
+    const std::size_t mask_at = parts.masks + p * mask_bytes;
+    const Bytes mask = raw.subspan(mask_at, mask_bytes);
+    pairs += count_bits(mask);
+    const std::size_t beyond = find_bit(mask, sources);
+    if (beyond == 8 * mask_bytes)
+        return {};
+    return refuse(section,
+                  mask_at + beyond / 8,
+                  "local receiver ",
+                  p,
+                  " has a pair with source ",
+                  beyond,
+                  ", the sector has ",
+                  sources);
+}
+
+ReadStatus check_receivers(const Content& content) {
+    std::size_t pairs = 0;
+    for (std::size_t p = 0; p < content.probes; ++p) {
+        if (ReadStatus status = check_receiver(content, p, pairs); !status.ok())
+            return status;
+    }
+    const Local& parts = content.parts;
+    if (ReadStatus status = check_padding(content, parts.receivers_end, parts.masks, "receivers");
+        !status.ok())
+        return status;
+    if (content.pairs == pairs)
+        return {};
+    return refuse(content.section,
+                  Local::pair_count,
+                  "local transfer section: the header says ",
+                  content.pairs,
+                  " pairs, the masks have ",
+                  pairs);
+}
+
+}  // namespace
+
+ReadStatus check_local_transfer_content(const Section& section, std::size_t probe_count) {
+    const Content content = content_of(section, probe_count);
+    if (ReadStatus status = check_header(content); !status.ok())
+        return status;
+    if (ReadStatus status = check_sources(content); !status.ok())
+        return status;
+    return check_receivers(content);
+}
+
+}  // namespace drtv
