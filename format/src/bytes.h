@@ -4,17 +4,20 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 namespace drtv {
 
-template <class Unsigned>
-[[nodiscard]] inline Unsigned load_le(std::span<const std::uint8_t> bytes, std::size_t offset) {
+using ByteSpan = std::span<const std::uint8_t>;
+using ByteVector = std::vector<std::uint8_t>;
+
+template <std::unsigned_integral Unsigned>
+[[nodiscard]] inline Unsigned load_le(ByteSpan bytes, std::size_t offset) {
     if constexpr (std::endian::native == std::endian::little) {
         Unsigned value;  // the compiler does not see by itself that the loop below is one load
         std::memcpy(&value, bytes.data() + offset, sizeof value);
@@ -26,57 +29,78 @@ template <class Unsigned>
     return static_cast<Unsigned>(value);
 }
 
-template <class Unsigned>
-inline void append_le(std::vector<std::uint8_t>& bytes, Unsigned value) {
-    for (std::size_t k = 0; k < sizeof(Unsigned); ++k) {
-        bytes.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * k)));
+[[nodiscard]] inline std::uint16_t load_u16(ByteSpan bytes, std::size_t offset) {
+    return load_le<std::uint16_t>(bytes, offset);
+}
+[[nodiscard]] inline std::uint32_t load_u32(ByteSpan bytes, std::size_t offset) {
+    return load_le<std::uint32_t>(bytes, offset);
+}
+[[nodiscard]] inline std::uint64_t load_u64(ByteSpan bytes, std::size_t offset) {
+    return load_le<std::uint64_t>(bytes, offset);
+}
+[[nodiscard]] inline std::int8_t load_i8(ByteSpan bytes, std::size_t offset) {
+    return static_cast<std::int8_t>(bytes[offset]);
+}
+[[nodiscard]] inline std::int16_t load_i16(ByteSpan bytes, std::size_t offset) {
+    return static_cast<std::int16_t>(load_u16(bytes, offset));
+}
+[[nodiscard]] inline std::int32_t load_i32(ByteSpan bytes, std::size_t offset) {
+    return static_cast<std::int32_t>(load_u32(bytes, offset));
+}
+[[nodiscard]] inline float load_f32(ByteSpan bytes, std::size_t offset) {
+    return std::bit_cast<float>(load_u32(bytes, offset));
+}
+
+template <std::integral Integer>
+inline void append_le(ByteVector& bytes, Integer value) {
+    auto rest = static_cast<std::uint64_t>(value);
+    for (std::size_t k = 0; k < sizeof(Integer); ++k) {
+        bytes.push_back(static_cast<std::uint8_t>(rest));
+        rest >>= 8;
     }
 }
 
-[[nodiscard]] inline std::int8_t load_i8(std::span<const std::uint8_t> bytes, std::size_t offset) {
-    return static_cast<std::int8_t>(bytes[offset]);
+// REQUIRES: `count` fits.
+inline void append_u16(ByteVector& bytes, std::size_t count) {
+    append_le(bytes, static_cast<std::uint16_t>(count));
 }
-[[nodiscard]] inline std::int16_t load_i16(std::span<const std::uint8_t> bytes, std::size_t offset) {
-    return static_cast<std::int16_t>(load_le<std::uint16_t>(bytes, offset));
+inline void append_u32(ByteVector& bytes, std::size_t count) {
+    append_le(bytes, static_cast<std::uint32_t>(count));
 }
-[[nodiscard]] inline std::int32_t load_i32(std::span<const std::uint8_t> bytes, std::size_t offset) {
-    return static_cast<std::int32_t>(load_le<std::uint32_t>(bytes, offset));
-}
-[[nodiscard]] inline float load_f32(std::span<const std::uint8_t> bytes, std::size_t offset) {
-    return std::bit_cast<float>(load_le<std::uint32_t>(bytes, offset));
-}
-inline void append_f32(std::vector<std::uint8_t>& bytes, float value) {
+inline void append_f32(ByteVector& bytes, float value) {
     append_le(bytes, std::bit_cast<std::uint32_t>(value));
 }
 
-[[nodiscard]] inline bool all_zero(std::span<const std::uint8_t> bytes) {
-    return std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b == 0; });
+inline void append_bytes(ByteVector& bytes, ByteSpan more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+}
+inline void append_zeros(ByteVector& bytes, std::size_t count) {
+    bytes.resize(bytes.size() + count, 0);
+}
+
+[[nodiscard]] inline bool all_zero(ByteSpan bytes) {
+    return std::ranges::all_of(bytes, [](std::uint8_t byte) { return byte == 0; });
 }
 
 // Fixed-point codes of an array of arrays of any depth, the last index fastest. Gives the offset behind them.
+inline std::size_t load_codes(ByteSpan bytes, std::size_t offset, std::int16_t& code) {
+    code = load_i16(bytes, offset);
+    return offset + sizeof code;
+}
 template <class Element, std::size_t count>
-std::size_t load_codes(std::span<const std::uint8_t> bytes,
-                       std::size_t offset,
-                       std::array<Element, count>& codes) {
-    for (Element& element : codes) {
-        if constexpr (std::is_same_v<Element, std::int16_t>) {
-            element = load_i16(bytes, offset);
-            offset += sizeof(std::int16_t);
-        } else {
-            offset = load_codes(bytes, offset, element);
-        }
-    }
+std::size_t load_codes(ByteSpan bytes, std::size_t offset, std::array<Element, count>& codes) {
+    for (Element& element : codes)
+        offset = load_codes(bytes, offset, element);
     return offset;
 }
 
+inline void append_codes(ByteVector& bytes, std::int16_t code) {
+    append_le(bytes, code);
+}
 template <class Element, std::size_t count>
-void append_codes(std::vector<std::uint8_t>& bytes, const std::array<Element, count>& codes) {
-    for (const Element& element : codes) {
-        if constexpr (std::is_same_v<Element, std::int16_t>)
-            append_le(bytes, static_cast<std::uint16_t>(element));
-        else
-            append_codes(bytes, element);
-    }
+void append_codes(ByteVector& bytes, const std::array<Element, count>& codes) {
+    for (const Element& element : codes)
+        append_codes(bytes, element);
 }
 
 }  // namespace drtv

@@ -27,20 +27,20 @@ std::uint64_t xxh64(std::span<const std::uint8_t> bytes) {
     if (bytes.size() >= 32) {
         std::uint64_t a = prime1 + prime2, b = prime2, c = 0, d = 0 - prime1;
         for (; at + 32 <= bytes.size(); at += 32) {
-            a = round(a, load_le<std::uint64_t>(bytes, at));
-            b = round(b, load_le<std::uint64_t>(bytes, at + 8));
-            c = round(c, load_le<std::uint64_t>(bytes, at + 16));
-            d = round(d, load_le<std::uint64_t>(bytes, at + 24));
+            a = round(a, load_u64(bytes, at));
+            b = round(b, load_u64(bytes, at + 8));
+            c = round(c, load_u64(bytes, at + 16));
+            d = round(d, load_u64(bytes, at + 24));
         }
         hash = std::rotl(a, 1) + std::rotl(b, 7) + std::rotl(c, 12) + std::rotl(d, 18);
         hash = merge(merge(merge(merge(hash, a), b), c), d);
     }
     hash += bytes.size();
     for (; at + 8 <= bytes.size(); at += 8) {
-        hash = std::rotl(hash ^ round(0, load_le<std::uint64_t>(bytes, at)), 27) * prime1 + prime4;
+        hash = std::rotl(hash ^ round(0, load_u64(bytes, at)), 27) * prime1 + prime4;
     }
     if (at + 4 <= bytes.size()) {
-        hash = std::rotl(hash ^ load_le<std::uint32_t>(bytes, at) * prime1, 23) * prime2 + prime3;
+        hash = std::rotl(hash ^ load_u32(bytes, at) * prime1, 23) * prime2 + prime3;
         at += 4;
     }
     for (; at < bytes.size(); ++at)

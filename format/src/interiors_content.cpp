@@ -1,6 +1,7 @@
 #include "interiors_content.h"
 
 #include "bytes.h"
+#include "section_headers.h"
 #include "section_refusal.h"
 
 #include <drtv/sector.h>
@@ -10,13 +11,12 @@
 namespace drtv {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
 using Rooms = layout::InteriorsLayout;
 
 // What the header says, beside the section.
 struct Content {
     const Section& section;
-    Bytes raw;
+    ByteSpan raw;
     std::size_t interiors;
     std::size_t vertices;
     std::size_t triangles;
@@ -24,11 +24,8 @@ struct Content {
 };
 
 Content content_of(const Section& section) {
-    const Bytes raw = section.raw;
-    const std::size_t interiors = load_le<std::uint16_t>(raw, Rooms::interior_count);
-    const std::size_t vertices = load_le<std::uint32_t>(raw, Rooms::vertex_count);
-    const std::size_t triangles = load_le<std::uint32_t>(raw, Rooms::triangle_count);
-    return {section, raw, interiors, vertices, triangles, Rooms(interiors, vertices, triangles)};
+    const InteriorsCounts counts = load_interiors_counts(section.raw);
+    return {section, section.raw, counts.interiors, counts.vertices, counts.triangles, counts.parts()};
 }
 
 // One interior's line of the table.
@@ -42,14 +39,14 @@ struct Entry {
     std::size_t triangles;
 };
 
-Entry load_entry(Bytes raw, std::size_t at) {
+Entry load_entry(ByteSpan raw, std::size_t at) {
     return {raw[at + Rooms::shift],
             raw[at + Rooms::probe],
-            load_le<std::uint16_t>(raw, at + Rooms::entry_reserved),
-            load_le<std::uint32_t>(raw, at + Rooms::first_vertex),
-            load_le<std::uint32_t>(raw, at + Rooms::vertices_of),
-            load_le<std::uint32_t>(raw, at + Rooms::first_triangle),
-            load_le<std::uint32_t>(raw, at + Rooms::triangles_of)};
+            load_u16(raw, at + Rooms::entry_reserved),
+            load_u32(raw, at + Rooms::first_vertex),
+            load_u32(raw, at + Rooms::vertices_of),
+            load_u32(raw, at + Rooms::first_triangle),
+            load_u32(raw, at + Rooms::triangles_of)};
 }
 
 // What the interiors before one have together.
@@ -73,8 +70,8 @@ ReadStatus check_header(const Content& content) {
                       interiors,
                       " interiors are over the limit of 1024");
     }
-    const auto reserved = load_le<std::uint16_t>(raw, Rooms::reserved);
-    const auto reserved2 = load_le<std::uint32_t>(raw, Rooms::reserved2);
+    const auto reserved = load_u16(raw, Rooms::reserved);
+    const auto reserved2 = load_u32(raw, Rooms::reserved2);
     if (reserved != 0 || reserved2 != 0) {
         return refuse(
             section, Rooms::reserved, "interiors section: reserved bytes of its header are not zero");
@@ -169,7 +166,7 @@ ReadStatus check_triangles(const Content& content, std::size_t n, const Entry& e
     const std::size_t start = content.parts.triangle_at(entry.first_triangle);
     for (std::size_t corner = 0; corner < 3 * entry.triangles; ++corner) {
         const std::size_t at = start + 2 * corner;
-        const auto vertex = load_le<std::uint16_t>(content.raw, at);
+        const auto vertex = load_u16(content.raw, at);
         if (vertex < entry.vertices)
             continue;
         return refuse(content.section,
@@ -224,7 +221,7 @@ ReadStatus check_interiors_content(const Section& section, std::size_t probe_cou
     if (!status.ok())
         return status;
     const Rooms& parts = content.parts;
-    const Bytes padding = content.raw.subspan(parts.vertices_end, parts.triangles - parts.vertices_end);
+    const ByteSpan padding = content.raw.subspan(parts.vertices_end, parts.triangles - parts.vertices_end);
     if (!all_zero(padding)) {
         return refuse(
             section, parts.vertices_end, "interiors section: the padding behind the vertices is not zero");

@@ -14,7 +14,6 @@
 namespace drtv {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
 using Local = layout::LocalTransferLayout;
 
 constexpr std::size_t values_of_pair = channel_count * sh_count;
@@ -65,7 +64,7 @@ constexpr std::array<int, values_of_pair> bits_off = {1, -1, -1, -1, -2, -4, -4,
 // size beside each other.
 class Places {
   public:
-    explicit Places(Bytes classes) : rank_(classes.size()) {
+    explicit Places(ByteSpan classes) : rank_(classes.size()) {
         std::array<std::uint32_t, class_count> of_class{};
         for (std::size_t n = 0; n < classes.size(); ++n)
             rank_[n] = of_class[classes[n]]++;
@@ -98,9 +97,9 @@ std::size_t max_filtered_bytes(std::size_t raw_bytes) {
     return raw_bytes + 2 * (raw_bytes / layout::light_codes_bytes);
 }
 
-std::vector<std::uint8_t> filter_local(Bytes raw, std::size_t probe_count) {
-    const std::size_t pairs = load_le<std::uint32_t>(raw, Local::pair_count);
-    const Local parts(probe_count, load_le<std::uint16_t>(raw, Local::source_count), pairs);
+std::vector<std::uint8_t> filter_local(ByteSpan raw, std::size_t probe_count) {
+    const std::size_t pairs = load_u32(raw, Local::pair_count);
+    const Local parts(probe_count, load_u16(raw, Local::source_count), pairs);
     std::vector<std::uint8_t> out(parts.filtered_end(pairs));
     std::copy_n(raw.begin(), parts.codes, out.begin());
     std::uint8_t *shifts = out.data() + parts.codes, *classes = shifts + pairs, *high = classes + pairs,
@@ -118,7 +117,7 @@ std::vector<std::uint8_t> filter_local(Bytes raw, std::size_t probe_count) {
             value >>= shifts[n];
         classes[n] = static_cast<std::uint8_t>(std::bit_width(bits >> shifts[n]));
     }
-    const Places places(Bytes(classes, pairs));
+    const Places places(ByteSpan(classes, pairs));
     Predictor predictor;
     for (std::size_t n = 0; n < pairs; ++n) {
         std::size_t number = 0;
@@ -140,14 +139,14 @@ std::vector<std::uint8_t> filter_local(Bytes raw, std::size_t probe_count) {
     return out;
 }
 
-bool unfilter_local(Bytes filtered,
+bool unfilter_local(ByteSpan filtered,
                     std::size_t probe_count,
                     std::size_t raw_bytes,
                     std::vector<std::uint8_t>& raw) {
     if (filtered.size() < Local::header_bytes)
         return false;
-    const std::size_t sources = load_le<std::uint16_t>(filtered, Local::source_count),
-                      pairs = load_le<std::uint32_t>(filtered, Local::pair_count);
+    const std::size_t sources = load_u16(filtered, Local::source_count),
+                      pairs = load_u32(filtered, Local::pair_count);
     if (sources > max_probes || pairs > probe_count * sources)
         return false;
     const Local parts(probe_count, sources, pairs);
@@ -162,7 +161,7 @@ bool unfilter_local(Bytes filtered,
 
     raw.resize(raw_bytes);
     std::copy_n(filtered.begin(), parts.codes, raw.begin());
-    const Places places(Bytes(classes, pairs));
+    const Places places(ByteSpan(classes, pairs));
     Predictor predictor;
     for (std::size_t n = 0; n < pairs; ++n) {
         Values v{};

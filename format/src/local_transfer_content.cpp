@@ -1,6 +1,7 @@
 #include "local_transfer_content.h"
 
 #include "bytes.h"
+#include "section_headers.h"
 #include "section_refusal.h"
 
 #include <drtv/sector.h>
@@ -11,13 +12,12 @@
 namespace drtv {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
 using Local = layout::LocalTransferLayout;
 
 // What the header says, beside the section.
 struct Content {
     const Section& section;
-    Bytes raw;
+    ByteSpan raw;
     std::size_t probes;
     std::size_t sources;
     std::size_t pairs;
@@ -26,11 +26,14 @@ struct Content {
 };
 
 Content content_of(const Section& section, std::size_t probes) {
-    const Bytes raw = section.raw;
-    const std::size_t sources = load_le<std::uint16_t>(raw, Local::source_count);
-    const std::size_t pairs = load_le<std::uint32_t>(raw, Local::pair_count);
-    const std::size_t mask_bytes = Local::mask_bytes(sources);
-    return {section, raw, probes, sources, pairs, mask_bytes, Local(probes, sources, pairs)};
+    const LocalTransferCounts counts = load_local_transfer_counts(section.raw);
+    return {section,
+            section.raw,
+            probes,
+            counts.sources,
+            counts.pairs,
+            Local::mask_bytes(counts.sources),
+            counts.parts(probes)};
 }
 
 ReadStatus check_padding(const Content& content, std::size_t start, std::size_t end, const char* part) {
@@ -50,7 +53,7 @@ ReadStatus check_header(const Content& content) {
                       sources,
                       " sources are over the limit of 255");
     }
-    const auto said_mask_bytes = load_le<std::uint16_t>(raw, Local::mask_size);
+    const auto said_mask_bytes = load_u16(raw, Local::mask_size);
     if (said_mask_bytes != mask_bytes) {
         return refuse(section,
                       Local::mask_size,
@@ -122,15 +125,15 @@ ReadStatus check_sources(const Content& content) {
     return check_padding(content, content.parts.sources_end, content.parts.receivers, "sources");
 }
 
-std::size_t count_bits(Bytes mask) {
+std::size_t count_bits(ByteSpan mask) {
     int count = 0;
     for (std::size_t at = 0; at < mask.size(); at += sizeof(std::uint64_t))
-        count += std::popcount(load_le<std::uint64_t>(mask, at));
+        count += std::popcount(load_u64(mask, at));
     return static_cast<std::size_t>(count);
 }
 
 // The first bit that is set from `start` on; the number of bits where there is none.
-std::size_t find_bit(Bytes mask, std::size_t start) {
+std::size_t find_bit(ByteSpan mask, std::size_t start) {
     std::size_t below = start % 8;  // bits of the first byte that do not count
     for (std::size_t n = start / 8; n < mask.size(); ++n) {
         const unsigned bits = unsigned{mask[n]} >> below << below;
@@ -147,7 +150,7 @@ ReadStatus check_receiver(const Content& content, std::size_t p, std::size_t& pa
     const std::size_t at = parts.receiver_at(p);
     if (!all_zero(raw.subspan(at + 5, 3)))
         return refuse(section, at + 5, "local receiver ", p, ": its reserved bytes are not zero");
-    const auto first_pair = load_le<std::uint32_t>(raw, at);
+    const auto first_pair = load_u32(raw, at);
     if (first_pair != pairs) {
         return refuse(section,
                       at,
@@ -159,7 +162,7 @@ ReadStatus check_receiver(const Content& content, std::size_t p, std::size_t& pa
                       pairs);
     }
     const std::size_t mask_at = parts.masks + p * mask_bytes;
-    const Bytes mask = raw.subspan(mask_at, mask_bytes);
+    const ByteSpan mask = raw.subspan(mask_at, mask_bytes);
     pairs += count_bits(mask);
     const std::size_t beyond = find_bit(mask, sources);
     if (beyond == 8 * mask_bytes)

@@ -2,161 +2,192 @@
 #include <drtv/read.h>
 
 #include "bytes.h"
+#include "section_headers.h"
 #include "sections.h"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
+#include <vector>
 
 namespace drtv {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
+using Triples = std::vector<std::array<std::uint16_t, 3>>;
 
-BakeRecord read_bake(Bytes raw) {
+BakeRecord read_bake(ByteSpan raw) {
     BakeRecord bake;
-    bake.rays = load_le<std::uint32_t>(raw, 0);
-    bake.bounces = load_le<std::uint32_t>(raw, 4);
+    bake.rays = load_u32(raw, 0);
+    bake.bounces = load_u32(raw, 4);
     bake.reach_m = load_f32(raw, 8);
     bake.min_distance_m = load_f32(raw, 12);
     std::memcpy(bake.settings_key.data(), raw.data() + 16, bake.settings_key.size());
     return bake;
 }
 
-void read_probes(const Sections& sections, std::vector<Probe>& probes) {
-    const Bytes positions = sections.of(SectionKind::positions).raw;
-    std::size_t position_at = 0, visibility_at = 0, transfer_at = 0;
+void read_positions(ByteSpan raw, std::vector<Probe>& probes) {
+    std::size_t at = 0;
     for (Probe& probe : probes) {
         for (std::size_t axis = 0; axis < 3; ++axis)
-            probe.position[axis] = load_le<std::uint16_t>(positions, position_at + 2 * axis);
-        probe.kind = static_cast<ProbeKind>(positions[position_at + 6]);
-        position_at += layout::position_bytes;
-        visibility_at =
-            load_codes(sections.of(SectionKind::sky_visibility).raw, visibility_at, probe.sky_visibility);
-        transfer_at = load_codes(sections.of(SectionKind::transfer).raw, transfer_at, probe.transfer);
+            probe.position[axis] = load_u16(raw, at + 2 * axis);
+        probe.kind = static_cast<ProbeKind>(raw[at + 6]);
+        at += layout::position_bytes;
     }
 }
 
-void read_grid(Bytes raw, Grid& grid) {
+void read_sky_visibility(ByteSpan raw, std::vector<Probe>& probes) {
+    std::size_t at = 0;
+    for (Probe& probe : probes)
+        at = load_codes(raw, at, probe.sky_visibility);
+}
+
+void read_transfer(ByteSpan raw, std::vector<Probe>& probes) {
+    std::size_t at = 0;
+    for (Probe& probe : probes)
+        at = load_codes(raw, at, probe.transfer);
+}
+
+void read_grid(ByteSpan raw, Grid& grid) {
     grid.z_origin_units = load_i32(raw, 0);
-    grid.cell_height_units = load_le<std::uint32_t>(raw, 4);
+    grid.cell_height_units = load_u32(raw, 4);
     std::memcpy(grid.cells.data(), raw.data() + layout::grid_header_bytes, grid.cells.size());
 }
 
-Statistics read_statistics(Bytes raw) {
+Statistics read_statistics(ByteSpan raw) {
     Statistics s;
-    s.candidates = load_le<std::uint32_t>(raw, 0);
-    s.moved_out = load_le<std::uint32_t>(raw, 4);
-    s.dropped_in_solid = load_le<std::uint32_t>(raw, 8);
-    s.removed_by_volume = load_le<std::uint32_t>(raw, 12);
-    s.thinned = load_le<std::uint32_t>(raw, 16);
+    s.candidates = load_u32(raw, 0);
+    s.moved_out = load_u32(raw, 4);
+    s.dropped_in_solid = load_u32(raw, 8);
+    s.removed_by_volume = load_u32(raw, 12);
+    s.thinned = load_u32(raw, 16);
     s.used_distance_m = load_f32(raw, 20);
-    s.rays = load_le<std::uint64_t>(raw, 24);
-    s.back_hits = load_le<std::uint64_t>(raw, 32);
+    s.rays = load_u64(raw, 24);
+    s.back_hits = load_u64(raw, 32);
     return s;
 }
 
-void read_static_irradiance(Bytes raw, std::vector<StaticIrradiance>& probes) {
+void read_static_irradiance(ByteSpan raw, std::vector<StaticIrradiance>& probes) {
     std::size_t at = 0;
     for (StaticIrradiance& probe : probes)
         at = load_codes(raw, at, probe.codes);
     for (StaticIrradiance& probe : probes)
-        probe.exponent = static_cast<std::int8_t>(raw[at++]);
+        probe.exponent = load_i8(raw, at++);
 }
 
-void read_local_transfer(Bytes raw, std::size_t probe_count, LocalTransfer& local) {
+LocalSource read_local_source(ByteSpan raw, std::size_t at) {
+    LocalSource source;
+    source.di = load_i8(raw, at);
+    source.dj = load_i8(raw, at + 1);
+    source.probe = raw[at + 2];
+    source.exponent = load_i8(raw, at + 3);
+    return source;
+}
+
+LocalReceiver read_local_receiver(ByteSpan raw, std::size_t at, ByteSpan mask) {
+    LocalReceiver receiver;
+    receiver.first_pair = load_u32(raw, at);
+    receiver.exponent = load_i8(raw, at + 4);
+    std::ranges::copy(mask, receiver.sources.begin());
+    return receiver;
+}
+
+void read_local_transfer(ByteSpan raw, std::size_t probe_count, LocalTransfer& local) {
     using Local = layout::LocalTransferLayout;
-    local.sources.resize(load_le<std::uint16_t>(raw, Local::source_count));
-    local.receivers.resize(probe_count);
-    local.pairs.resize(load_le<std::uint32_t>(raw, Local::pair_count));
-    const Local parts(probe_count, local.sources.size(), local.pairs.size());
-    const std::size_t mask_bytes = Local::mask_bytes(local.sources.size());
-    for (std::size_t s = 0; s < local.sources.size(); ++s) {
-        const std::size_t at = Local::source_at(s);
-        local.sources[s] = {static_cast<std::int8_t>(raw[at]),
-                            static_cast<std::int8_t>(raw[at + 1]),
-                            raw[at + 2],
-                            static_cast<std::int8_t>(raw[at + 3])};
-    }
+    const LocalTransferCounts counts = load_local_transfer_counts(raw);
+    const Local parts = counts.parts(probe_count);
+    const std::size_t mask_bytes = Local::mask_bytes(counts.sources);
+    local.sources.reserve(counts.sources);
+    for (std::size_t s = 0; s < counts.sources; ++s)
+        local.sources.push_back(read_local_source(raw, Local::source_at(s)));
+    local.receivers.reserve(probe_count);
     for (std::size_t p = 0; p < probe_count; ++p) {
-        local.receivers[p].first_pair = load_le<std::uint32_t>(raw, parts.receiver_at(p));
-        local.receivers[p].exponent = static_cast<std::int8_t>(raw[parts.receiver_at(p) + 4]);
-        std::memcpy(local.receivers[p].sources.data(), raw.data() + parts.masks + p * mask_bytes, mask_bytes);
+        const ByteSpan mask = raw.subspan(parts.masks + p * mask_bytes, mask_bytes);
+        local.receivers.push_back(read_local_receiver(raw, parts.receiver_at(p), mask));
     }
+    local.pairs.resize(counts.pairs);
     std::size_t at = parts.codes;
     for (LightCodes& pair : local.pairs)
         at = load_codes(raw, at, pair);
 }
 
-Convergence read_convergence(Bytes raw) {
+Convergence read_convergence(ByteSpan raw) {
     Convergence c;
-    std::size_t at = 0;
-    for (float* error : {&c.error_asked, &c.error_median, &c.error_p95, &c.error_max}) {
-        *error = load_f32(raw, at);
-        at += 4;
-    }
-    for (std::uint32_t* count : {&c.paths_least, &c.paths_most, &c.local_bounces, &c.local_rays}) {
-        *count = load_le<std::uint32_t>(raw, at);
-        at += 4;
-    }
-    c.static_rays = load_le<std::uint64_t>(raw, at);
-    c.local_transfer_rays = load_le<std::uint64_t>(raw, at + 8);
+    c.error_asked = load_f32(raw, 0);
+    c.error_median = load_f32(raw, 4);
+    c.error_p95 = load_f32(raw, 8);
+    c.error_max = load_f32(raw, 12);
+    c.paths_least = load_u32(raw, 16);
+    c.paths_most = load_u32(raw, 20);
+    c.local_bounces = load_u32(raw, 24);
+    c.local_rays = load_u32(raw, 28);
+    c.static_rays = load_u64(raw, 32);
+    c.local_transfer_rays = load_u64(raw, 40);
     return c;
 }
 
-void read_interiors(Bytes raw, std::vector<Interior>& interiors) {
+// Gives the offset behind the last.
+std::size_t read_triples(ByteSpan raw, std::size_t at, Triples& triples) {
+    for (auto& triple : triples) {
+        for (std::uint16_t& value : triple) {
+            value = load_u16(raw, at);
+            at += sizeof value;
+        }
+    }
+    return at;
+}
+
+void read_interiors(ByteSpan raw, std::vector<Interior>& interiors) {
     using Rooms = layout::InteriorsLayout;
-    interiors.resize(load_le<std::uint16_t>(raw, Rooms::interior_count));
-    const Rooms parts(interiors.size(),
-                      load_le<std::uint32_t>(raw, Rooms::vertex_count),
-                      load_le<std::uint32_t>(raw, Rooms::triangle_count));
-    std::size_t vertex_at = parts.vertices, triangle_at = parts.triangles;
-    const auto read_triples =
-        [&](std::size_t& at, std::size_t count, std::vector<std::array<std::uint16_t, 3>>& triples) {
-            triples.resize(count);
-            for (auto& triple : triples) {
-                for (std::uint16_t& value : triple) {
-                    value = load_le<std::uint16_t>(raw, at);
-                    at += sizeof value;
-                }
-            }
-        };
-    for (std::size_t n = 0; n < interiors.size(); ++n) {
-        const std::size_t at = Rooms::entry_at(n);
+    const InteriorsCounts counts = load_interiors_counts(raw);
+    const Rooms parts = counts.parts();
+    std::size_t vertex_at = parts.vertices;
+    std::size_t triangle_at = parts.triangles;
+    interiors.resize(counts.interiors);
+    for (std::size_t n = 0; n < counts.interiors; ++n) {
+        const ByteSpan entry = raw.subspan(Rooms::entry_at(n), Rooms::entry_bytes);
         Interior& interior = interiors[n];
         for (std::size_t axis = 0; axis < 3; ++axis)
-            interior.origin_units[axis] = load_i32(raw, at + Rooms::origin + 4 * axis);
-        interior.shift = raw[at + Rooms::shift];
-        interior.probe = raw[at + Rooms::probe];
-        read_triples(vertex_at, load_le<std::uint32_t>(raw, at + Rooms::vertices_of), interior.vertices);
-        read_triples(triangle_at, load_le<std::uint32_t>(raw, at + Rooms::triangles_of), interior.triangles);
+            interior.origin_units[axis] = load_i32(entry, Rooms::origin + 4 * axis);
+        interior.shift = entry[Rooms::shift];
+        interior.probe = entry[Rooms::probe];
+        interior.vertices.resize(load_u32(entry, Rooms::vertices_of));
+        interior.triangles.resize(load_u32(entry, Rooms::triangles_of));
+        vertex_at = read_triples(raw, vertex_at, interior.vertices);
+        triangle_at = read_triples(raw, triangle_at, interior.triangles);
     }
 }
 
 }  // namespace
 
-void copy_sector(Bytes file, const Sections& sections, Sector& sector) {
+void copy_sector(ByteSpan file, const Sections& sections, Sector& sector) {
     namespace h = layout::header;
+    const std::size_t probe_count = sections.probe_count;
     sector.i = load_i32(file, h::sector_i);
     sector.j = load_i32(file, h::sector_j);
     sector.z_origin_units = load_i32(file, h::z_origin);
     sector.z_shift = file[h::z_shift];
-    sector.probes.resize(sections.probe_count);
-    sector.bake = read_bake(sections.of(SectionKind::bake).raw);
-    read_probes(sections, sector.probes);
-    read_grid(sections.of(SectionKind::grid).raw, sector.grid);
-    sector.statistics = read_statistics(sections.of(SectionKind::statistics).raw);
-    if (const Section& section = sections.of(SectionKind::static_irradiance); section.present) {
-        sector.static_irradiance.resize(sections.probe_count);
-        read_static_irradiance(section.raw, sector.static_irradiance);
+    sector.probes.resize(probe_count);
+    sector.bake = read_bake(sections.raw(SectionKind::bake));
+    read_positions(sections.raw(SectionKind::positions), sector.probes);
+    read_sky_visibility(sections.raw(SectionKind::sky_visibility), sector.probes);
+    read_transfer(sections.raw(SectionKind::transfer), sector.probes);
+    read_grid(sections.raw(SectionKind::grid), sector.grid);
+    sector.statistics = read_statistics(sections.raw(SectionKind::statistics));
+    if (sections.has(SectionKind::static_irradiance)) {
+        sector.static_irradiance.resize(probe_count);
+        read_static_irradiance(sections.raw(SectionKind::static_irradiance), sector.static_irradiance);
     }
-    if (const Section& section = sections.of(SectionKind::local_transfer); section.present)
-        read_local_transfer(section.raw, sections.probe_count, sector.local_transfer.emplace());
-    if (const Section& section = sections.of(SectionKind::convergence); section.present)
-        sector.convergence = read_convergence(section.raw);
-    if (const Section& section = sections.of(SectionKind::interiors); section.present)
-        read_interiors(section.raw, sector.interiors);
+    if (sections.has(SectionKind::local_transfer)) {
+        LocalTransfer& local = sector.local_transfer.emplace();
+        read_local_transfer(sections.raw(SectionKind::local_transfer), probe_count, local);
+    }
+    if (sections.has(SectionKind::convergence))
+        sector.convergence = read_convergence(sections.raw(SectionKind::convergence));
+    if (sections.has(SectionKind::interiors))
+        read_interiors(sections.raw(SectionKind::interiors), sector.interiors);
 }
 
-ReadStatus read_sector(Bytes bytes, Sector& sector) {
+ReadStatus read_sector(ByteSpan bytes, Sector& sector) {
     SectionTable table;
     Unpacked unpacked;
     Sections sections;

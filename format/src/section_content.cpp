@@ -13,7 +13,6 @@
 namespace drtv {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
 ReadStatus check_finite(const Section& section, std::size_t at, const char* message) {
     return std::isfinite(load_f32(section.raw, at)) ? ReadStatus{} : refuse(section, at, message);
 }
@@ -38,16 +37,16 @@ ReadStatus check_positions(const Section& section, std::size_t probe_count) {
 }
 
 ReadStatus check_grid(const Section& section) {
-    const Bytes raw = section.raw;
+    const ByteSpan raw = section.raw;
     const std::int64_t z_origin = load_i32(raw, 0);
     if (std::abs(z_origin) > max_z_origin_units)
         return refuse(section, 0, "grid section: z origin ", z_origin, " is over the limit of 2^30");
-    const auto cell_height = load_le<std::uint32_t>(raw, 4);
+    const auto cell_height = load_u32(raw, 4);
     if (cell_height == 0 || cell_height > max_cell_height_units) {
         return refuse(
             section, 4, "grid section: the cell height ", cell_height, " is not between 1 and 2^24");
     }
-    if (load_le<std::uint64_t>(raw, 8) != 0)
+    if (load_u64(raw, 8) != 0)
         return refuse(section, 8, "grid section: reserved bytes are not zero");
     return {};
 }

@@ -10,31 +10,29 @@
 namespace drtv {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
-
-SectionEntry load_entry(Bytes file, std::size_t at) {
+SectionEntry load_entry(ByteSpan file, std::size_t at) {
     namespace e = layout::entry;
-    return {load_le<std::uint16_t>(file, at + e::kind),
-            load_le<std::uint16_t>(file, at + e::version),
+    return {load_u16(file, at + e::kind),
+            load_u16(file, at + e::version),
             file[at + e::codec],
-            load_le<std::uint32_t>(file, at + e::offset),
-            load_le<std::uint32_t>(file, at + e::stored_bytes),
-            load_le<std::uint32_t>(file, at + e::raw_bytes),
-            load_le<std::uint64_t>(file, at + e::checksum)};
+            load_u32(file, at + e::offset),
+            load_u32(file, at + e::stored_bytes),
+            load_u32(file, at + e::raw_bytes),
+            load_u64(file, at + e::checksum)};
 }
 
-ReadStatus check_header(Bytes file, std::size_t& section_count) {
+ReadStatus check_header(ByteSpan file, std::size_t& section_count) {
     namespace h = layout::header;
-    if (file.size() < 4 || load_le<std::uint32_t>(file, h::magic) != layout::magic) {
+    if (file.size() < 4 || load_u32(file, h::magic) != layout::magic) {
         return fail(
             ReadError::not_a_sector_file, 0, "not a drtv sector file: it does not start with \"DRTV\"");
     }
     // Magic and version come first and stay so in every version, whatever the length of its header.
-    if (file.size() >= h::file_bytes && load_le<std::uint16_t>(file, h::major) != layout::major_version) {
+    if (file.size() >= h::file_bytes && load_u16(file, h::major) != layout::major_version) {
         return fail(ReadError::unsupported_version,
                     h::major,
-                    "format version " + std::to_string(load_le<std::uint16_t>(file, h::major)) + "." +
-                        std::to_string(load_le<std::uint16_t>(file, h::minor)) +
+                    "format version " + std::to_string(load_u16(file, h::major)) + "." +
+                        std::to_string(load_u16(file, h::minor)) +
                         " is not supported: this reader knows version 1");
     }
     if (file.size() < layout::header_bytes) {
@@ -42,7 +40,7 @@ ReadStatus check_header(Bytes file, std::size_t& section_count) {
                     file.size(),
                     "the header needs 64 bytes, the file has " + std::to_string(file.size()));
     }
-    const auto file_bytes = load_le<std::uint32_t>(file, h::file_bytes);
+    const auto file_bytes = load_u32(file, h::file_bytes);
     if (file.size() < file_bytes) {
         return fail(ReadError::truncated,
                     file.size(),
@@ -55,7 +53,7 @@ ReadStatus check_header(Bytes file, std::size_t& section_count) {
                     "the header says " + std::to_string(file_bytes) + " bytes, the file has " +
                         std::to_string(file.size()));
     }
-    section_count = load_le<std::uint32_t>(file, h::section_count);
+    section_count = load_u32(file, h::section_count);
     if (section_count > layout::max_sections ||
         layout::header_bytes + section_count * layout::entry_bytes > file.size()) {
         return fail(ReadError::bad_header,
@@ -64,11 +62,10 @@ ReadStatus check_header(Bytes file, std::size_t& section_count) {
                         " sections, which do not fit the file or the limit of 64");
     }
     std::array<std::uint8_t, h::checksum + layout::max_sections * layout::entry_bytes> covered;
-    const Bytes table = file.subspan(layout::header_bytes, section_count * layout::entry_bytes);
+    const ByteSpan table = file.subspan(layout::header_bytes, section_count * layout::entry_bytes);
     std::copy_n(file.begin(), h::checksum, covered.begin());
     std::copy(table.begin(), table.end(), covered.begin() + h::checksum);
-    if (xxh64(Bytes(covered).first(h::checksum + table.size())) !=
-        load_le<std::uint64_t>(file, h::checksum)) {
+    if (xxh64(ByteSpan(covered).first(h::checksum + table.size())) != load_u64(file, h::checksum)) {
         return fail(ReadError::checksum_mismatch,
                     h::checksum,
                     "the header's checksum does not match header and table");
@@ -81,7 +78,7 @@ ReadStatus check_header(Bytes file, std::size_t& section_count) {
             std::abs(std::int64_t{i}) > max_sector_coordinate ? h::sector_i : h::sector_j,
             "sector (" + std::to_string(i) + ", " + std::to_string(j) + ") is beyond the limit of 16384");
     }
-    const auto probe_count = load_le<std::uint16_t>(file, h::probe_count);
+    const auto probe_count = load_u16(file, h::probe_count);
     if (probe_count > max_probes) {
         return fail(ReadError::bad_header,
                     h::probe_count,
@@ -103,10 +100,10 @@ ReadStatus check_header(Bytes file, std::size_t& section_count) {
     return {};
 }
 
-ReadStatus check_entry(Bytes file, std::size_t at, const SectionEntry& entry, std::size_t& end) {
+ReadStatus check_entry(ByteSpan file, std::size_t at, const SectionEntry& entry, std::size_t& end) {
     const auto name = [&] { return section_name(entry); };  // only a refusal is worth the string
     if (!all_zero(file.subspan(at + layout::entry::reserved, 3)) ||
-        load_le<std::uint32_t>(file, at + layout::entry::reserved2) != 0) {
+        load_u32(file, at + layout::entry::reserved2) != 0) {
         return fail(ReadError::bad_table, at, name() + ": reserved bytes of its entry are not zero");
     }
     if (entry.offset != layout::align(end)) {
@@ -176,7 +173,7 @@ const SectionEntry* SectionTable::find(SectionKind kind) const {
     return nullptr;
 }
 
-ReadStatus load_section_table(Bytes file, SectionTable& table) {
+ReadStatus load_section_table(ByteSpan file, SectionTable& table) {
     table.count = 0;
     std::size_t section_count = 0;
     if (ReadStatus status = check_header(file, section_count); !status.ok())
@@ -200,7 +197,7 @@ ReadStatus load_section_table(Bytes file, SectionTable& table) {
     return {};
 }
 
-ReadStatus read_section_table(Bytes bytes, std::vector<SectionEntry>& entries) {
+ReadStatus read_section_table(ByteSpan bytes, std::vector<SectionEntry>& entries) {
     entries.clear();
     SectionTable table;
     ReadStatus status = load_section_table(bytes, table);

@@ -12,7 +12,6 @@
 namespace drtv {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
 using Local = layout::LocalTransferLayout;
 
 constexpr std::uint16_t last_required_kind = static_cast<std::uint16_t>(SectionKind::statistics);
@@ -61,13 +60,13 @@ bool is_known(const SectionEntry& entry, std::uint16_t minor) {
 }
 
 // One Zstandard frame, whole and alone: no skippable frame, none of a format before 0.8, nothing behind it.
-bool is_one_frame(Bytes stored) {
-    return stored.size() >= 4 && load_le<std::uint32_t>(stored, 0) == ZSTD_MAGICNUMBER &&
+bool is_one_frame(ByteSpan stored) {
+    return stored.size() >= 4 && load_u32(stored, 0) == ZSTD_MAGICNUMBER &&
            ZSTD_findFrameCompressedSize(stored.data(), stored.size()) == stored.size();
 }
 
 // The frame's bytes; false where it has more than `out` holds, or is none. `out` is cut to what there was.
-bool unpack_frame(Bytes stored, std::vector<std::uint8_t>& out) {
+bool unpack_frame(ByteSpan stored, std::vector<std::uint8_t>& out) {
     const std::size_t size = ZSTD_decompress(out.data(), out.size(), stored.data(), stored.size());
     if (ZSTD_isError(size))
         return false;
@@ -76,7 +75,7 @@ bool unpack_frame(Bytes stored, std::vector<std::uint8_t>& out) {
 }
 
 ReadStatus decode(
-    Bytes file, const SectionEntry& entry, std::size_t probe_count, Unpacked* unpacked, Section& section) {
+    ByteSpan file, const SectionEntry& entry, std::size_t probe_count, Unpacked* unpacked, Section& section) {
     const auto refuse = [&](const std::string& what) {
         return fail(ReadError::bad_section, entry.offset, section_name(entry) + what);
     };
@@ -86,7 +85,7 @@ ReadStatus decode(
                       std::to_string(size.least) +
                       (size.least == size.most ? "" : " to " + std::to_string(size.most)));
     }
-    const Bytes stored = file.subspan(entry.offset, entry.stored_bytes);
+    const ByteSpan stored = file.subspan(entry.offset, entry.stored_bytes);
     const auto codec = static_cast<Codec>(entry.codec);
     const bool filtered = entry.version == layout::filtered_local_version;
     section.place = {entry.offset, codec == Codec::raw};
@@ -124,11 +123,11 @@ ReadStatus decode(
 
 }  // namespace
 
-ReadStatus load_sections(Bytes file, SectionTable& table, Unpacked* unpacked, Sections& sections) {
+ReadStatus load_sections(ByteSpan file, SectionTable& table, Unpacked* unpacked, Sections& sections) {
     if (ReadStatus status = load_section_table(file, table); !status.ok())
         return status;
-    const auto minor = load_le<std::uint16_t>(file, layout::header::minor);
-    sections.probe_count = load_le<std::uint16_t>(file, layout::header::probe_count);
+    const auto minor = load_u16(file, layout::header::minor);
+    sections.probe_count = load_u16(file, layout::header::probe_count);
     for (std::uint16_t k = 1; k < known_kinds; ++k) {
         const auto kind = static_cast<SectionKind>(k);
         const SectionEntry* entry = table.find(kind);

@@ -31,6 +31,8 @@ struct Sections {
     [[nodiscard]] const Section& of(SectionKind kind) const {
         return of_kind[static_cast<std::size_t>(kind)];
     }
+    [[nodiscard]] bool has(SectionKind kind) const { return of(kind).present; }
+    [[nodiscard]] std::span<const std::uint8_t> raw(SectionKind kind) const { return of(kind).raw; }
 };
 
 // Where the decoded bytes of compressed sections lie.

@@ -3,78 +3,86 @@
 #include <drtv/write.h>
 
 #include "bytes.h"
+#include "section_headers.h"
 #include "sections.h"
 
 namespace drtv {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
+using Triple = std::array<std::uint16_t, 3>;
 
 // `count` elements that stand at `offset`, which the section's rules say are there. Types of this file have
 // the layout of the bytes, offsets are multiples of their alignment.
 template <class Element>
-std::span<const Element> elements(Bytes raw, std::size_t offset, std::size_t count) {
+std::span<const Element> elements(ByteSpan raw, std::size_t offset, std::size_t count) {
     return {reinterpret_cast<const Element*>(raw.data() + offset), count};
 }
 
-void view_local_transfer(Bytes raw, std::size_t probe_count, SectorView& view) {
+void view_static_irradiance(ByteSpan raw, std::size_t probe_count, SectorView& view) {
+    const std::size_t exponents = probe_count * layout::light_codes_bytes;
+    view.static_irradiance = elements<LightCodes>(raw, 0, probe_count);
+    view.static_exponents = elements<std::int8_t>(raw, exponents, probe_count);
+}
+
+void view_local_transfer(ByteSpan raw, std::size_t probe_count, SectorView& view) {
     using Local = layout::LocalTransferLayout;
-    const std::size_t sources = load_le<std::uint16_t>(raw, Local::source_count),
-                      pairs = load_le<std::uint32_t>(raw, Local::pair_count);
+    const auto [sources, pairs] = load_local_transfer_counts(raw);
     const Local parts(probe_count, sources, pairs);
+    const std::size_t mask_bytes = Local::mask_bytes(sources);
     view.local_sources = elements<LocalSource>(raw, Local::header_bytes, sources);
     view.local_receivers = elements<StoredReceiver>(raw, parts.receivers, probe_count);
-    view.local_mask_bytes = Local::mask_bytes(sources);
-    view.local_masks = raw.subspan(parts.masks, probe_count * view.local_mask_bytes);
+    view.local_mask_bytes = mask_bytes;
+    view.local_masks = raw.subspan(parts.masks, probe_count * mask_bytes);
     view.local_pairs = elements<LightCodes>(raw, parts.codes, pairs);
 }
 
-void view_interiors(Bytes raw, SectorView& view) {
+void view_interiors(ByteSpan raw, SectorView& view) {
     using Rooms = layout::InteriorsLayout;
-    const std::size_t count = load_le<std::uint16_t>(raw, Rooms::interior_count),
-                      vertices = load_le<std::uint32_t>(raw, Rooms::vertex_count),
-                      triangles = load_le<std::uint32_t>(raw, Rooms::triangle_count);
-    const Rooms parts(count, vertices, triangles);
-    view.interiors = elements<StoredInterior>(raw, Rooms::header_bytes, count);
-    view.interior_vertices = elements<std::array<std::uint16_t, 3>>(raw, parts.vertices, vertices);
-    view.interior_triangles = elements<std::array<std::uint16_t, 3>>(raw, parts.triangles, triangles);
+    const auto [interiors, vertices, triangles] = load_interiors_counts(raw);
+    const Rooms parts(interiors, vertices, triangles);
+    view.interiors = elements<StoredInterior>(raw, Rooms::header_bytes, interiors);
+    view.interior_vertices = elements<Triple>(raw, parts.vertices, vertices);
+    view.interior_triangles = elements<Triple>(raw, parts.triangles, triangles);
+}
+
+SectorView view_sections(ByteSpan file, const Sections& sections) {
+    namespace h = layout::header;
+    const std::size_t count = sections.probe_count;
+    SectorView view;
+    view.i = load_i32(file, h::sector_i);
+    view.j = load_i32(file, h::sector_j);
+    view.z_origin_units = load_i32(file, h::z_origin);
+    view.z_shift = file[h::z_shift];
+    view.probe_count = count;
+    view.positions = elements<StoredPosition>(sections.raw(SectionKind::positions), 0, count);
+    view.sky_visibility = elements<VisibilityCodes>(sections.raw(SectionKind::sky_visibility), 0, count);
+    view.transfer = elements<TransferCodes>(sections.raw(SectionKind::transfer), 0, count);
+    view.grid = elements<StoredGrid>(sections.raw(SectionKind::grid), 0, 1).data();
+    if (sections.has(SectionKind::static_irradiance))
+        view_static_irradiance(sections.raw(SectionKind::static_irradiance), count, view);
+    if (sections.has(SectionKind::local_transfer))
+        view_local_transfer(sections.raw(SectionKind::local_transfer), count, view);
+    if (sections.has(SectionKind::interiors))
+        view_interiors(sections.raw(SectionKind::interiors), view);
+    return view;
 }
 
 }  // namespace
 
-ReadStatus open_sector(Bytes bytes, SectorView& view) {
-    namespace h = layout::header;
+ReadStatus open_sector(ByteSpan bytes, SectorView& view) {
     SectionTable table;
     Sections sections;
     if (ReadStatus status = load_sections(bytes, table, nullptr, sections); !status.ok())
         return status;
-    if (reinterpret_cast<std::uintptr_t>(bytes.data()) % layout::alignment != 0) {
+    const auto address = reinterpret_cast<std::uintptr_t>(bytes.data());
+    if (address % layout::alignment != 0) {
         return {ReadError::misaligned, 0, "the file's bytes do not start at a multiple of 16 in memory"};
     }
-    const std::size_t count = sections.probe_count;
-    SectorView v;
-    v.i = load_i32(bytes, h::sector_i);
-    v.j = load_i32(bytes, h::sector_j);
-    v.z_origin_units = load_i32(bytes, h::z_origin);
-    v.z_shift = bytes[h::z_shift];
-    v.probe_count = count;
-    v.positions = elements<StoredPosition>(sections.of(SectionKind::positions).raw, 0, count);
-    v.sky_visibility = elements<VisibilityCodes>(sections.of(SectionKind::sky_visibility).raw, 0, count);
-    v.transfer = elements<TransferCodes>(sections.of(SectionKind::transfer).raw, 0, count);
-    v.grid = elements<StoredGrid>(sections.of(SectionKind::grid).raw, 0, 1).data();
-    if (const Section& section = sections.of(SectionKind::static_irradiance); section.present) {
-        v.static_irradiance = elements<LightCodes>(section.raw, 0, count);
-        v.static_exponents = elements<std::int8_t>(section.raw, count * layout::light_codes_bytes, count);
-    }
-    if (const Section& section = sections.of(SectionKind::local_transfer); section.present)
-        view_local_transfer(section.raw, count, v);
-    if (const Section& section = sections.of(SectionKind::interiors); section.present)
-        view_interiors(section.raw, v);
-    view = v;
+    view = view_sections(bytes, sections);
     return {};
 }
 
-ReadStatus unpack_sector(Bytes bytes, std::vector<std::uint8_t>& raw_file) {
+ReadStatus unpack_sector(ByteSpan bytes, std::vector<std::uint8_t>& raw_file) {
     Sector sector;
     ReadStatus status = read_sector(bytes, sector);
     if (status.ok())
