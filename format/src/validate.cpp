@@ -92,15 +92,18 @@ Report validate_sector(std::span<const std::uint8_t> bytes, const ValidateOption
 
     Sector sector;
     copy_sector(bytes, sections, sector);
-    check_settings(sector, sections.of(SectionKind::bake).place, findings);
-    check_probe_positions(sector, sections.of(SectionKind::positions).place, findings);
-    check_sky_visibility(sector, sections.of(SectionKind::sky_visibility).place, findings);
-    check_transfer(sector, sections.of(SectionKind::transfer).place, findings);
-    check_grid(sector, sections.of(SectionKind::grid).place, findings);
-    check_static_irradiance(sector, sections.of(SectionKind::static_irradiance).place, findings);
-    check_local_transfer(sector, sections.of(SectionKind::local_transfer).place, findings);
-    check_convergence(sector, sections.of(SectionKind::convergence).place, findings);
-    check_interiors(sector, sections.of(SectionKind::interiors).place, findings);
+    const auto check = [&](SectionKind kind) {
+        return SectionCheck{sector, sections.of(kind).place, findings};
+    };
+    check_settings(check(SectionKind::bake));
+    check_probe_positions(check(SectionKind::positions));
+    check_sky_visibility(check(SectionKind::sky_visibility));
+    check_transfer(check(SectionKind::transfer));
+    check_grid(check(SectionKind::grid));
+    check_static_irradiance(check(SectionKind::static_irradiance));
+    check_local_transfer(check(SectionKind::local_transfer));
+    check_convergence(check(SectionKind::convergence));
+    check_interiors(check(SectionKind::interiors));
     return findings.take();
 }
 

@@ -1,8 +1,12 @@
-// Rules for what every sector has: settings, positions, sky visibility, transfer, grid.
+// Rules for settings and for what every probe has: position, sky visibility, transfer.
+#include "sentence.h"
 #include "validate_rules.h"
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
 #include <vector>
 
 namespace drtv {
@@ -10,228 +14,152 @@ namespace {
 
 // Under a sky of radiance 1. Both sums come from the same rays; what is over 1 is rounding of codes and
 // weights.
-constexpr float most_energy = 1.01f;
+constexpr float max_energy = 1.01f;
 // Radiance that is nowhere negative has |L_i| <= sqrt(3) L_0; two codes for the rounding of both.
 constexpr double sqrt3 = 1.7320508;
 constexpr double band_slack_codes = 2;
 
-constexpr std::size_t considered_probes = 4;  // of a grid cell (SPEC.md, section 5.5)
-
+// Where a code stands: probe, channel, basis direction, coefficient.
 struct TransferCode {
-    const Sector& sector;
-    const layout::Place& place;
-    std::size_t p, c, b, i;
+    const SectionCheck& check;
+    std::size_t p;
+    std::size_t c;
+    std::size_t b;
+    std::size_t i;
 
-    [[nodiscard]] std::int16_t code() const { return sector.probes[p].transfer[c][b][i]; }
+    [[nodiscard]] const std::array<std::int16_t, sh_count>& codes() const {
+        return check.sector.probes[p].transfer[c][b];
+    }
     [[nodiscard]] std::uint64_t offset() const {
-        return place.at(p * layout::transfer_bytes + 2 * ((c * basis_count + b) * sh_count + i));
+        const std::size_t before = (c * basis_count + b) * sh_count + i;
+        return check.place.at(p * layout::transfer_bytes + 2 * before);
     }
     [[nodiscard]] std::string path() const {
         return probe_path(p) + ".transfer." + channel_name[c] + index(b) + index(i);
     }
+    template <class Message>
+    void add(const Issue& issue, double value, Message message) const {
+        check.findings.add(
+            issue, offset(), value, [&] { return path(); }, message);
+    }
 };
 
-void check_transfer_code(const TransferCode& at, Findings& findings) {
-    const std::int16_t q = at.code();
-    const auto path = [&] { return at.path(); };
+void check_transfer_code(const TransferCode& at) {
+    const std::int16_t q = at.codes()[at.i];
     if (q == INT16_MIN) {
-        findings.add(issue::fixed_point_reserved, at.offset(), static_cast<double>(q), path, [] {
-            return std::string("code -32768 is reserved");
-        });
+        at.add(issue::fixed_point_reserved, q, [] { return "code -32768 is reserved"; });
         return;
     }
     const float value = decode_fixed(q, transfer_scale);
     const float bound = at.i == 0 ? transfer_bound_y0 : transfer_bound_y1;
     if (std::abs(value) > bound) {
-        findings.add(issue::transfer_range, at.offset(), value, path, [&] {
-            return std::to_string(value) + " is beyond " + std::to_string(bound);
-        });
+        at.add(issue::transfer_range, value, [&] { return sentence(value, " is beyond ", bound); });
         return;
     }
     // Y0 and Y2 are positive over the whole sky.
-    if ((at.i == 0 || at.i == 2) && q < 0) {
-        findings.add(issue::transfer_sign, at.offset(), value, path, [&] {
-            return std::to_string(value) + " is negative";
-        });
+    const bool positive = at.i == 0 || at.i == 2;
+    if (positive && q < 0) {
+        at.add(issue::transfer_sign, value, [&] { return sentence(value, " is negative"); });
         return;
     }
-    const std::int16_t q0 = at.sector.probes[at.p].transfer[at.c][at.b][0];
-    if (at.i > 0 && q0 >= 0 && std::abs(static_cast<double>(q)) > sqrt3 * q0 + band_slack_codes) {
-        findings.add(issue::transfer_band, at.offset(), value, path, [&] {
-            return std::to_string(value) + " is more than sqrt(3) times " +
-                   std::to_string(decode_fixed(q0, transfer_scale)) + " of Y0";
+    const std::int16_t q0 = at.codes()[0];
+    if (at.i == 0 || q0 < 0)
+        return;
+    const double size = std::abs(q);
+    if (size > sqrt3 * q0 + band_slack_codes) {
+        at.add(issue::transfer_band, value, [&] {
+            const float y0 = decode_fixed(q0, transfer_scale);
+            return sentence(value, " is more than sqrt(3) times ", y0, " of Y0");
         });
     }
 }
 
-void check_energy(const Sector& sector, const layout::Place& place, std::size_t p, Findings& findings) {
-    const Probe& probe = sector.probes[p];
-    for (std::size_t c = 0; c < channel_count; ++c) {
-        for (std::size_t b = 0; b < basis_count; ++b) {
-            const float bounced = decode_fixed(probe.transfer[c][b][0], transfer_scale) / sh_y0;
-            const float seen =
-                decode_fixed(probe.sky_visibility[b], sky_visibility_scale) * open_sky_share(b);
-            // What is too large by itself is told already.
-            if (!(bounced + seen > most_energy) || bounced * sh_y0 > transfer_bound_y0)
-                continue;
-            const TransferCode at{sector, place, p, c, b, 0};
-            findings.add(
-                issue::energy,
-                at.offset(),
-                bounced + seen,
-                [&] { return at.path(); },
-                [&] {
-                    return "bounce " + std::to_string(bounced) + " and sky " + std::to_string(seen) +
-                           " under a sky of radiance 1 add up to more than 1";
-                });
-        }
-    }
+// What comes back from the ground and what is seen of the sky are at most all that the sky sends.
+void check_energy(const SectionCheck& check, std::size_t p, std::size_t c, std::size_t b) {
+    const Probe& probe = check.sector.probes[p];
+    const float bounced = decode_fixed(probe.transfer[c][b][0], transfer_scale) / sh_y0;
+    const float visibility = decode_fixed(probe.sky_visibility[b], sky_visibility_scale);
+    const float seen = visibility * open_sky_share(b);
+    if (!(bounced + seen > max_energy))
+        return;
+    // What is too large by itself is told already.
+    if (bounced * sh_y0 > transfer_bound_y0)
+        return;
+    const TransferCode at{check, p, c, b, 0};
+    at.add(issue::energy, bounced + seen, [&] {
+        return sentence(
+            "bounce ", bounced, " and sky ", seen, " under a sky of radiance 1 add up to more than 1");
+    });
 }
 
-// Whether fewer than `considered_probes` probes come before `named` by (distance, index).
-bool is_among_nearest(const std::vector<double>& squared, std::size_t named) {
-    const double its = squared[named];
-    std::size_t before = 0;
-    for (std::size_t p = 0; p < named; ++p)
-        before += squared[p] <= its ? 1u : 0u;
-    for (std::size_t p = named + 1; p < squared.size(); ++p)
-        before += squared[p] < its ? 1u : 0u;
-    return before < considered_probes;
-}
-
-// For each cell whether it names one of the probes nearest to its centre; false where it names none.
-std::array<bool, grid_cell_count> cells_of_near_probes(const Sector& sector) {
-    // In units from the grid's corner; whole numbers, whose squared distances a double holds exactly as far
-    // as probes can lie apart.
-    const std::size_t count = sector.probes.size();
-    std::vector<std::array<double, 3>> positions(count);
-    for (std::size_t p = 0; p < count; ++p) {
-        const auto& position = sector.probes[p].position;
-        const std::int64_t z = std::int64_t{sector.z_origin_units} +
-                               (std::int64_t{position[2]} << sector.z_shift) - sector.grid.z_origin_units;
-        positions[p] = {
-            static_cast<double>(position[0]), static_cast<double>(position[1]), static_cast<double>(z)};
-    }
-    constexpr double width = sector_size_m * position_units_per_m / double{grid_size};
-    const auto height = static_cast<double>(sector.grid.cell_height_units);
-    const double middle = std::floor(height / 2);
-    std::array<bool, grid_cell_count> near{};
-    std::vector<double> level(count), squared(count);
-    for (std::size_t column = 0; column < grid_size * grid_size; ++column) {
-        const double x = width * static_cast<double>(column % grid_size) + width / 2,
-                     y = width * static_cast<double>(column / grid_size) + width / 2;
-        for (std::size_t p = 0; p < count; ++p)
-            level[p] =
-                (positions[p][0] - x) * (positions[p][0] - x) + (positions[p][1] - y) * (positions[p][1] - y);
-        for (std::size_t cz = 0; cz < grid_size; ++cz) {
-            const std::size_t cell = column + grid_size * grid_size * cz, named = sector.grid.cells[cell];
-            if (named >= count)
-                continue;
-            const double z = height * static_cast<double>(cz) + middle;
-            for (std::size_t p = 0; p < count; ++p)
-                squared[p] = level[p] + (positions[p][2] - z) * (positions[p][2] - z);
-            near[cell] = is_among_nearest(squared, named);
-        }
-    }
-    return near;
+void check_visibility_code(const SectionCheck& check, std::size_t p, std::size_t b) {
+    const std::int16_t q = check.sector.probes[p].sky_visibility[b];
+    const bool down = b + 1 == basis_count;
+    if (q == 0 || (q > 0 && !down))
+        return;
+    const std::uint64_t offset = check.place.at(p * layout::sky_visibility_bytes + 2 * b);
+    const auto path = [&] { return probe_path(p) + ".sky_visibility" + index(b); };
+    const auto add = [&](const Issue& issue, const char* what) {
+        const auto message = [&] { return sentence("code ", q, what); };
+        check.findings.add(issue, offset, q, path, message);
+    };
+    if (q == INT16_MIN)
+        add(issue::fixed_point_reserved, " is reserved");
+    else if (down)
+        add(issue::sky_visibility_down, ", must be 0");
+    else
+        add(issue::sky_visibility_range, " is negative");
 }
 
 }  // namespace
 
-void check_settings(const Sector& sector, const layout::Place& place, Findings& findings) {
-    const BakeRecord& bake = sector.bake;
+void check_settings(const SectionCheck& check) {
     const auto check_positive = [&](const char* name, std::uint64_t offset, double value) {
         if (value > 0)
             return;
-        findings.add(
-            issue::settings_range,
-            place.at(offset),
-            value,
-            [&] { return std::string("settings.") + name; },
-            [] { return std::string("is not above 0"); });
+        const auto path = [&] { return std::string("settings.") + name; };
+        const auto message = [] { return "is not above 0"; };
+        check.findings.add(issue::settings_range, check.place.at(offset), value, path, message);
     };
+    const BakeRecord& bake = check.sector.bake;
     check_positive("rays", 0, bake.rays);
     check_positive("reach", 8, static_cast<double>(bake.reach_m));
     check_positive("min_distance", 12, static_cast<double>(bake.min_distance_m));
 }
 
-void check_probe_positions(const Sector& sector, const layout::Place& place, Findings& findings) {
-    for (std::size_t p = 1; p < sector.probes.size(); ++p) {
+void check_probe_positions(const SectionCheck& check) {
+    const std::vector<Probe>& probes = check.sector.probes;
+    for (std::size_t p = 1; p < probes.size(); ++p) {
         for (std::size_t q = 0; q < p; ++q) {
-            if (sector.probes[p].position != sector.probes[q].position)
+            if (probes[p].position != probes[q].position)
                 continue;
-            findings.add(
-                issue::duplicate_position,
-                place.at(p * layout::position_bytes),
-                static_cast<double>(q),
-                [&] { return probe_path(p) + ".position"; },
-                [&] { return "is that of probe " + std::to_string(q); });
+            const std::uint64_t offset = check.place.at(p * layout::position_bytes);
+            const auto path = [&] { return probe_path(p) + ".position"; };
+            const auto message = [&] { return sentence("is that of probe ", q); };
+            check.findings.add(issue::duplicate_position, offset, static_cast<double>(q), path, message);
             break;
         }
     }
 }
 
-void check_sky_visibility(const Sector& sector, const layout::Place& place, Findings& findings) {
-    for (std::size_t p = 0; p < sector.probes.size(); ++p) {
-        for (std::size_t b = 0; b < basis_count; ++b) {
-            const std::int16_t q = sector.probes[p].sky_visibility[b];
-            if (q == 0 || (q > 0 && b + 1 < basis_count))
-                continue;
-            const bool reserved = q == INT16_MIN, down = b + 1 == basis_count;
-            findings.add(
-                reserved ? issue::fixed_point_reserved
-                : down   ? issue::sky_visibility_down
-                         : issue::sky_visibility_range,
-                place.at(p * layout::sky_visibility_bytes + 2 * b),
-                static_cast<double>(q),
-                [&] { return probe_path(p) + ".sky_visibility" + index(b); },
-                [&] {
-                    return "code " + std::to_string(q) +
-                           (reserved ? " is reserved"
-                            : down   ? ", must be 0"
-                                     : " is negative");
-                });
-        }
+void check_sky_visibility(const SectionCheck& check) {
+    for (std::size_t p = 0; p < check.sector.probes.size(); ++p) {
+        for (std::size_t b = 0; b < basis_count; ++b)
+            check_visibility_code(check, p, b);
     }
 }
 
-void check_transfer(const Sector& sector, const layout::Place& place, Findings& findings) {
-    for (std::size_t p = 0; p < sector.probes.size(); ++p) {
+void check_transfer(const SectionCheck& check) {
+    for (std::size_t p = 0; p < check.sector.probes.size(); ++p) {
         for (std::size_t c = 0; c < channel_count; ++c) {
             for (std::size_t b = 0; b < basis_count; ++b) {
                 for (std::size_t i = 0; i < sh_count; ++i)
-                    check_transfer_code({sector, place, p, c, b, i}, findings);
+                    check_transfer_code({check, p, c, b, i});
             }
         }
-        check_energy(sector, place, p, findings);
-    }
-}
-
-void check_grid(const Sector& sector, const layout::Place& place, Findings& findings) {
-    const std::size_t count = sector.probes.size();
-    const std::array<bool, grid_cell_count> near = cells_of_near_probes(sector);
-    for (std::size_t cell = 0; cell < grid_cell_count; ++cell) {
-        const std::size_t named = sector.grid.cells[cell];
-        const auto add = [&](const Issue& issue, const auto& message) {
-            findings.add(
-                issue,
-                place.at(layout::grid_header_bytes + cell),
-                static_cast<double>(named),
-                [&] { return "grid.cells" + index(cell); },
-                message);
-        };
-        if (named == no_probe) {
-            if (count > 0)
-                add(issue::grid_no_probe,
-                    [&] { return "names no probe, the sector has " + std::to_string(count); });
-        } else if (named >= count) {
-            add(issue::grid_reference, [&] {
-                return "names probe " + std::to_string(named) + ", the sector has " + std::to_string(count);
-            });
-        } else if (!near[cell]) {
-            add(issue::grid_not_nearest, [&] {
-                return "names probe " + std::to_string(named) + ", and four others are nearer to its centre";
-            });
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            for (std::size_t b = 0; b < basis_count; ++b)
+                check_energy(check, p, c, b);
         }
     }
 }

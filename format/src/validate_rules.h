@@ -8,14 +8,20 @@
 
 namespace drtv {
 
-void check_settings(const Sector& sector, const layout::Place& place, Findings& findings);
-void check_probe_positions(const Sector& sector, const layout::Place& place, Findings& findings);
-void check_sky_visibility(const Sector& sector, const layout::Place& place, Findings& findings);
-void check_transfer(const Sector& sector, const layout::Place& place, Findings& findings);
-void check_grid(const Sector& sector, const layout::Place& place, Findings& findings);
-void check_static_irradiance(const Sector& sector, const layout::Place& place, Findings& findings);
-void check_local_transfer(const Sector& sector, const layout::Place& place, Findings& findings);
-void check_convergence(const Sector& sector, const layout::Place& place, Findings& findings);
-void check_interiors(const Sector& sector, const layout::Place& place, Findings& findings);
+struct SectionCheck {
+    const Sector& sector;
+    layout::Place place;  // of the section that the rules are about
+    Findings& findings;
+};
+
+void check_settings(const SectionCheck& check);
+void check_probe_positions(const SectionCheck& check);
+void check_sky_visibility(const SectionCheck& check);
+void check_transfer(const SectionCheck& check);
+void check_grid(const SectionCheck& check);
+void check_static_irradiance(const SectionCheck& check);
+void check_local_transfer(const SectionCheck& check);
+void check_convergence(const SectionCheck& check);
+void check_interiors(const SectionCheck& check);
 
 }  // namespace drtv
