@@ -3,6 +3,7 @@
 // wrong byte.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -27,6 +28,15 @@ class JsonWriter {
     JsonWriter& value(std::uint64_t number);
     JsonWriter& value(int number) { return value(std::int64_t{number}); }
     JsonWriter& value(unsigned number) { return value(std::uint64_t{number}); }
+
+    // A key with its value.
+    template <class Value>
+    JsonWriter& member(std::string_view name, const Value& content) {
+        return key(name).value(content);
+    }
+    JsonWriter& count(std::string_view name, std::size_t number) {
+        return key(name).value(std::uint64_t{number});
+    }
 
     template <class Range>
     JsonWriter& array(const Range& range) {
