@@ -17,7 +17,29 @@ namespace drtv::tool {
 
 namespace fs = std::filesystem;
 
-std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std::string& error) {
+namespace {
+
+// Whether the bytes are the beginning of a sector file, as far as they go.
+bool may_be_sector(const FileBytes& bytes) {
+    constexpr std::string_view magic = "DRTV";
+    const std::string_view start = magic.substr(0, bytes.size());
+    return std::equal(start.begin(), start.end(), bytes.begin());
+}
+
+std::string reason() {
+    return std::strerror(errno);
+}
+
+// False where not all could be written; `errno` tells why.
+bool write_all(std::FILE* file, const FileBytes& bytes) {
+    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    const bool closed = std::fclose(file) == 0;
+    return written && closed;
+}
+
+}  // namespace
+
+std::optional<FileBytes> read_file(const std::string& path, std::string& error) {
     std::error_code code;
     if (fs::is_directory(path, code)) {
         error = path + " is a folder, not a file";
@@ -25,59 +47,59 @@ std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std:
     }
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr) {
-        error = "cannot read " + path + ": " + std::strerror(errno);
+        error = "cannot read " + path + ": " + reason();
         return std::nullopt;
     }
-    std::vector<std::uint8_t> bytes;
+    FileBytes bytes;
     std::uint8_t buffer[65536];
-    constexpr std::string_view magic = "DRTV";
     for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) {
         bytes.insert(bytes.end(), buffer, buffer + n);
         // What is no sector file is refused by its first bytes, however long it is.
-        if (!std::equal(magic.begin(),
-                        magic.begin() + static_cast<std::ptrdiff_t>(std::min(magic.size(), bytes.size())),
-                        bytes.begin()))
+        if (!may_be_sector(bytes))
             break;
     }
     const bool failed = std::ferror(file) != 0;
     std::fclose(file);
     if (failed) {
-        error = "cannot read " + path + ": " + std::strerror(errno);
+        error = "cannot read " + path + ": " + reason();
         return std::nullopt;
     }
     return bytes;
 }
 
-bool write_file(const std::string& link, const std::vector<std::uint8_t>& bytes, std::string& error) {
+bool write_file(const std::string& link, const FileBytes& bytes, std::string& error) {
     // The file behind a link is replaced, not the link; a device or a pipe is not replaced at all.
     std::error_code code;
-    const std::string path = fs::is_symlink(link, code) ? fs::weakly_canonical(link, code).string() : link;
-    if (const fs::file_status status = fs::status(path, code);
-        fs::exists(status) && !fs::is_regular_file(status)) {
+    const bool is_link = fs::is_symlink(link, code);
+    const std::string path = is_link ? fs::weakly_canonical(link, code).string() : link;
+    const fs::file_status status = fs::status(path, code);
+    if (fs::exists(status) && !fs::is_regular_file(status)) {
         error = "cannot write " + link + ": it is not a regular file";
         return false;
     }
     const std::string temporary = path + ".tmp" + std::to_string(::getpid());
     std::FILE* file = std::fopen(temporary.c_str(), "wb");
-    bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    if (file != nullptr && std::fclose(file) != 0)
-        written = false;
-    if (written && std::rename(temporary.c_str(), path.c_str()) == 0)
+    if (file == nullptr) {
+        error = "cannot write " + path + ": " + reason();
+        return false;
+    }
+    if (write_all(file, bytes) && std::rename(temporary.c_str(), path.c_str()) == 0)
         return true;
-    error = "cannot write " + path + ": " + std::strerror(errno);
-    if (file != nullptr)
-        std::remove(temporary.c_str());
+    error = "cannot write " + path + ": " + reason();
+    std::remove(temporary.c_str());
     return false;
 }
 
 std::string format_version(std::span<const std::uint8_t> bytes) {
     const auto number = [&](std::size_t at) {
-        return std::to_string(unsigned{bytes[at]} | unsigned{bytes[at + 1]} << 8);
+        const unsigned low = bytes[at];
+        const unsigned high = bytes[at + 1];
+        return std::to_string(low | high << 8);
     };
     return number(4) + "." + number(6);
 }
 
-std::optional<std::vector<std::string>> sector_files(const std::string& path) {
+std::optional<FilePaths> sector_files(const std::string& path) {
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
     if (!fs::exists(status)) {
@@ -85,8 +107,8 @@ std::optional<std::vector<std::string>> sector_files(const std::string& path) {
         return std::nullopt;
     }
     if (!fs::is_directory(status))
-        return std::vector<std::string>{path};
-    std::vector<std::string> files;
+        return FilePaths{path};
+    FilePaths files;
     fs::recursive_directory_iterator entry(path, code);
     for (; !code && entry != fs::recursive_directory_iterator(); entry.increment(code)) {
         std::error_code ignored;
@@ -105,7 +127,7 @@ std::optional<std::vector<std::string>> sector_files(const std::string& path) {
     return files;
 }
 
-std::optional<Sector> load_sector(const std::string& path, int& exit_code, std::vector<std::uint8_t>* bytes) {
+std::optional<Sector> load_sector(const std::string& path, int& exit_code, FileBytes* bytes) {
     std::string error;
     auto read = read_file(path, error);
     if (!read) {
