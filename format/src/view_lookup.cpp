@@ -12,13 +12,15 @@
 namespace drtv {
 namespace {
 
-using Double3 = std::array<double, 3>;
+struct Vector {
+    double x;
+    double y;
+    double z;
+};
 
 template <class Number>
-Double3 double3_of(const std::array<Number, 3>& v) {
-    Double3 result;
-    std::ranges::copy(v, result.begin());
-    return result;
+Vector vector_of(const std::array<Number, 3>& v) {
+    return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
 // What is not a number counts as too low.
@@ -29,21 +31,24 @@ std::size_t cell_of(double offset, double cell) {
     return static_cast<std::size_t>(std::min(index, double{grid_size - 1}));
 }
 
-double dot(const Double3& a, const Double3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+Vector operator-(const Vector& a, const Vector& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-double length(const Double3& v) {
+double dot(const Vector& a, const Vector& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+double length(const Vector& v) {
     return std::sqrt(dot(v, v));
 }
-Double3 cross(const Double3& a, const Double3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Double3 subtract(const Double3& a, const Double3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+Vector cross(const Vector& a, const Vector& b) {
+    const double x = a.y * b.z - a.z * b.y;
+    const double y = a.z * b.x - a.x * b.z;
+    const double z = a.x * b.y - a.y * b.x;
+    return {x, y, z};
 }
 
 // Of a triangle seen from the origin, signed (van Oosterom and Strackee 1983).
-double solid_angle(const Double3& a, const Double3& b, const Double3& c) {
+double solid_angle(const Vector& a, const Vector& b, const Vector& c) {
     const double la = length(a);
     const double lb = length(b);
     const double lc = length(c);
@@ -52,17 +57,25 @@ double solid_angle(const Double3& a, const Double3& b, const Double3& c) {
     return 2 * std::atan2(numerator, denominator);
 }
 
+bool is_step(double steps) {
+    return steps >= 0 && steps <= UINT16_MAX;
+}
+
 // In steps from the interior's origin; nothing beyond all that steps reach.
-std::optional<Double3> point_in_steps(const StoredInterior& interior, const Float3& world_m) {
+std::optional<Vector> point_in_steps(const StoredInterior& interior, const Float3& world_m) {
     const double units_per_step = 1u << interior.shift;
-    Double3 point = double3_of(world_m);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double units = point[axis] * position_units_per_m - interior.origin_units[axis];
-        point[axis] = units / units_per_step;
-        const bool within = point[axis] >= 0 && point[axis] <= UINT16_MAX;
-        if (!within)
-            return std::nullopt;
-    }
+    const auto steps_of = [&](double metres, std::int32_t origin_units) {
+        const double units = metres * position_units_per_m - origin_units;
+        return units / units_per_step;
+    };
+    const auto [x_m, y_m, z_m] = vector_of(world_m);
+    const auto [origin_x, origin_y, origin_z] = interior.origin_units;
+    Vector point;
+    point.x = steps_of(x_m, origin_x);
+    point.y = steps_of(y_m, origin_y);
+    point.z = steps_of(z_m, origin_z);
+    if (!is_step(point.x) || !is_step(point.y) || !is_step(point.z))
+        return std::nullopt;
     return point;
 }
 
@@ -85,7 +98,7 @@ std::uint8_t find_probe(const SectorView& sector, const Float3& world_m) {
     const StoredGrid& grid = *sector.grid;
     constexpr double side_m = sector_size_m;
     constexpr double width_m = side_m / grid_size;
-    const auto [world_x, world_y, world_z] = double3_of(world_m);
+    const auto [world_x, world_y, world_z] = vector_of(world_m);
     const double height_units = world_z * position_units_per_m - grid.z_origin_units;
     const std::size_t x = cell_of(world_x - side_m * sector.i, width_m);
     const std::size_t y = cell_of(world_y - side_m * sector.j, width_m);
@@ -117,7 +130,7 @@ bool is_inside(const SectorView& sector, const StoredInterior& interior, const F
     const auto vertices = sector.interior_vertices.subspan(interior.first_vertex, interior.vertex_count);
     const auto triangles =
         sector.interior_triangles.subspan(interior.first_triangle, interior.triangle_count);
-    const auto corner = [&](std::uint16_t v) { return subtract(double3_of(vertices[v]), *point); };
+    const auto corner = [&](std::uint16_t v) { return vector_of(vertices[v]) - *point; };
     double sum = 0;
     for (const auto& [a, b, c] : triangles)
         sum += solid_angle(corner(a), corner(b), corner(c));

@@ -44,15 +44,16 @@ std::optional<std::array<std::int32_t, 2>> sector_in_name(const std::string& pat
 }
 
 void check_file(CheckedFile& file, const ValidateOptions& options, bool for_regions) {
-    const auto bytes = read_file(file.path, file.unreadable);
-    if (!bytes)
+    const FileRead read = read_file(file.path);
+    file.unreadable = read.error;
+    if (!read.ok())
         return;
-    file.report = validate_sector(*bytes, options);
+    file.report = validate_sector(read.bytes, options);
     if (!for_regions)
         return;
     RegionSector region;
     region.named = file.named;
-    if (read_region_sector(*bytes, region).ok())
+    if (read_region_sector(read.bytes, region).ok())
         file.region = std::move(region);
 }
 

@@ -165,8 +165,8 @@ int write_picture(const RegionPicture& picture, const Request& request) {
     const auto image = draw(picture, request.metres_per_pixel);
     if (!image)
         return exit_usage;
-    std::string error;
-    if (!write_file(*request.png, encode_png(*image), error)) {
+    const std::string error = write_file(*request.png, encode_png(*image));
+    if (!error.empty()) {
         complain(error);
         return exit_unreadable;
     }

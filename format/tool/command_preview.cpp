@@ -81,7 +81,8 @@ int run_preview(Arguments arguments) {
     const auto image = draw(picture, parsed->metres_per_pixel);
     if (!image)
         return exit_usage;
-    if (std::string error; !write_file(parsed->out, encode_png(*image), error)) {
+    const std::string error = write_file(parsed->out, encode_png(*image));
+    if (!error.empty()) {
         complain(error);
         return exit_unreadable;
     }

@@ -141,7 +141,8 @@ int run_strip(Arguments arguments) {
         std::error_code ignored;
         if (const fs::path folder = fs::path(target).parent_path(); !folder.empty())
             fs::create_directories(folder, ignored);
-        if (std::string error; !write_file(target, stripped, error)) {
+        const std::string error = write_file(target, stripped);
+        if (!error.empty()) {
             complain(error);
             return exit_unreadable;
         }

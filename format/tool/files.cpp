@@ -12,6 +12,8 @@
 #include <cstring>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 namespace drtv::tool {
 
@@ -39,17 +41,13 @@ bool write_all(std::FILE* file, const FileBytes& bytes) {
 
 }  // namespace
 
-std::optional<FileBytes> read_file(const std::string& path, std::string& error) {
+FileRead read_file(const std::string& path) {
     std::error_code code;
-    if (fs::is_directory(path, code)) {
-        error = path + " is a folder, not a file";
-        return std::nullopt;
-    }
+    if (fs::is_directory(path, code))
+        return {{}, path + " is a folder, not a file"};
     std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (file == nullptr) {
-        error = "cannot read " + path + ": " + reason();
-        return std::nullopt;
-    }
+    if (file == nullptr)
+        return {{}, "cannot read " + path + ": " + reason()};
     FileBytes bytes;
     std::uint8_t buffer[65536];
     for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) {
@@ -60,34 +58,28 @@ std::optional<FileBytes> read_file(const std::string& path, std::string& error) 
     }
     const bool failed = std::ferror(file) != 0;
     std::fclose(file);
-    if (failed) {
-        error = "cannot read " + path + ": " + reason();
-        return std::nullopt;
-    }
-    return bytes;
+    if (failed)
+        return {{}, "cannot read " + path + ": " + reason()};
+    return {std::move(bytes), {}};
 }
 
-bool write_file(const std::string& link, const FileBytes& bytes, std::string& error) {
+std::string write_file(const std::string& link, const FileBytes& bytes) {
     // The file behind a link is replaced, not the link; a device or a pipe is not replaced at all.
     std::error_code code;
     const bool is_link = fs::is_symlink(link, code);
     const std::string path = is_link ? fs::weakly_canonical(link, code).string() : link;
     const fs::file_status status = fs::status(path, code);
-    if (fs::exists(status) && !fs::is_regular_file(status)) {
-        error = "cannot write " + link + ": it is not a regular file";
-        return false;
-    }
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        return "cannot write " + link + ": it is not a regular file";
     const std::string temporary = path + ".tmp" + std::to_string(::getpid());
     std::FILE* file = std::fopen(temporary.c_str(), "wb");
-    if (file == nullptr) {
-        error = "cannot write " + path + ": " + reason();
-        return false;
-    }
+    if (file == nullptr)
+        return "cannot write " + path + ": " + reason();
     if (write_all(file, bytes) && std::rename(temporary.c_str(), path.c_str()) == 0)
-        return true;
-    error = "cannot write " + path + ": " + reason();
+        return {};
+    const std::string error = "cannot write " + path + ": " + reason();
     std::remove(temporary.c_str());
-    return false;
+    return error;
 }
 
 std::string format_version(std::span<const std::uint8_t> bytes) {
@@ -128,21 +120,20 @@ std::optional<FilePaths> sector_files(const std::string& path) {
 }
 
 std::optional<Sector> load_sector(const std::string& path, int& exit_code, FileBytes* bytes) {
-    std::string error;
-    auto read = read_file(path, error);
-    if (!read) {
-        complain(error);
+    FileRead file = read_file(path);
+    if (!file.ok()) {
+        complain(file.error);
         exit_code = exit_unreadable;
         return std::nullopt;
     }
     std::optional<Sector> sector(std::in_place);
-    if (const ReadStatus status = read_sector(*read, *sector); !status.ok()) {
+    if (const ReadStatus status = read_sector(file.bytes, *sector); !status.ok()) {
         complain(path + ": " + status.message);
         exit_code = exit_invalid;
         return std::nullopt;
     }
     if (bytes != nullptr)
-        *bytes = std::move(*read);
+        *bytes = std::move(file.bytes);
     return sector;
 }
 

@@ -14,13 +14,19 @@ namespace drtv::tool {
 using FileBytes = std::vector<std::uint8_t>;
 using FilePaths = std::vector<std::string>;
 
-// The file's bytes, or nothing with a sentence in `error`. Of a file that does not begin as a sector file
-// does, only the beginning.
-[[nodiscard]] std::optional<FileBytes> read_file(const std::string& path, std::string& error);
+struct FileRead {
+    FileBytes bytes;
+    std::string error;  // a sentence; empty where the file could be read
 
-// Writes the file whole or not at all (temporary file, then rename), through links. False with a sentence in
-// `error`: also for what is there and no regular file.
-[[nodiscard]] bool write_file(const std::string& path, const FileBytes& bytes, std::string& error);
+    [[nodiscard]] bool ok() const { return error.empty(); }
+};
+
+// All bytes of the file. Of one that does not begin as a sector file does, only the beginning.
+[[nodiscard]] FileRead read_file(const std::string& path);
+
+// Writes the file whole or not at all (temporary file, then rename), through links. Gives a sentence where it
+// fails: also for what is there and no regular file.
+[[nodiscard]] std::string write_file(const std::string& path, const FileBytes& bytes);
 
 // "1.0" from the header of a sector file. REQUIRES: the file was read without error.
 [[nodiscard]] std::string format_version(std::span<const std::uint8_t> bytes);

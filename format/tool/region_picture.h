@@ -13,7 +13,9 @@
 namespace drtv::tool {
 
 struct Dot {
-    double x_m = 0, y_m = 0, z_m = 0;
+    double x_m = 0;
+    double y_m = 0;
+    double z_m = 0;
     float sky_visibility = 0;  // average of the three upward directions
     ProbeKind kind = ProbeKind::ground;
     Float3 colour{};  // linear

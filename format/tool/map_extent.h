@@ -1,0 +1,38 @@
+// The part of the world that a picture shows, and where its pixels lie.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace drtv::tool {
+
+// A rectangle of whole sectors.
+struct MapExtent {
+    int i0;  // sectors, half open
+    int j0;
+    int i1;
+    int j1;
+    double metres_per_pixel;
+    std::size_t width;  // pixels
+    std::size_t height;
+
+    [[nodiscard]] std::size_t sectors_wide() const { return static_cast<std::size_t>(i1 - i0); }
+    [[nodiscard]] std::size_t sectors_high() const { return static_cast<std::size_t>(j1 - j0); }
+
+    // World position of a pixel's centre; rows run from the north (large y) down.
+    [[nodiscard]] double x_m(std::size_t px) const;
+    [[nodiscard]] double y_m(std::size_t py) const;
+
+    // The inverse, in pixels.
+    [[nodiscard]] double x_px(double x_m) const;
+    [[nodiscard]] double y_px(double y_m) const;
+};
+
+// Around all sectors (i, j). At 0 metres a pixel the longer side has 1600 pixels; however far apart the
+// sectors lie, the picture stays under 64 megapixels. REQUIRES: at least one sector.
+[[nodiscard]] MapExtent measure(std::span<const std::array<std::int32_t, 2>> sectors,
+                                double metres_per_pixel);
+
+}  // namespace drtv::tool
