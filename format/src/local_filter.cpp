@@ -18,6 +18,7 @@ namespace {
 using Local = layout::LocalTransferLayout;
 
 constexpr std::size_t values_of_pair = channel_count * sh_count;
+constexpr std::uint8_t shift_count = 16;
 constexpr std::uint8_t class_count = 17;  // 0 to 16 bits
 
 // A pair's numbers in the order in which they are foretold: green first, from which red and blue follow.
@@ -77,7 +78,18 @@ class Predictor {
 
 // How many bits a number is off a pair's class, about: green's band 0 one more for its sign, the others less,
 // those foretold least.
-constexpr std::array<int, values_of_pair> bits_off = {1, -1, -1, -1, -2, -4, -4, -4, -2, -4, -4, -4};
+constexpr std::array<int, values_of_pair> bits_off = {1,
+                                                      -1,
+                                                      -1,
+                                                      -1,  // green
+                                                      -2,
+                                                      -4,
+                                                      -4,
+                                                      -4,  // red
+                                                      -2,
+                                                      -4,
+                                                      -4,
+                                                      -4};  // blue
 
 // Where each pair's numbers stand in the planes: one number of all pairs of a class together, groups of like
 // size beside each other.
@@ -131,6 +143,10 @@ Values load_values(ByteSpan raw, std::size_t at) {
         at += sizeof(std::int16_t);
     }
     return values;
+}
+
+bool all_below(ByteSpan bytes, std::uint8_t limit) {
+    return std::ranges::all_of(bytes, [limit](std::uint8_t byte) { return byte < limit; });
 }
 
 // All bits that the numbers have, without their signs.
@@ -199,9 +215,7 @@ bool unfilter_local(ByteSpan filtered,
     const Planes<const std::uint8_t> planes(filtered.data() + parts.codes, pairs);
     const ByteSpan shifts(planes.shifts, pairs);
     const ByteSpan classes(planes.classes, pairs);
-    if (std::ranges::any_of(shifts, [](std::uint8_t shift) { return shift > 15; }))
-        return false;
-    if (std::ranges::any_of(classes, [](std::uint8_t its_class) { return its_class >= class_count; }))
+    if (!all_below(shifts, shift_count) || !all_below(classes, class_count))
         return false;
 
     raw.resize(raw_bytes);

@@ -18,7 +18,8 @@ constexpr std::size_t max_covered_sectors = std::size_t{1} << 18;
 
 std::uint8_t encode_srgb(float linear) {
     const float x = std::clamp(linear, 0.0f, 1.0f);
-    const float s = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+    const bool dark = x <= 0.0031308f;
+    const float s = dark ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
     return static_cast<std::uint8_t>(s * 255 + 0.5f);
 }
 
@@ -48,43 +49,51 @@ void darken_pixel(Image& image, std::size_t x, std::size_t y) {
         pixel[c] = static_cast<std::uint8_t>(pixel[c] * 3 / 4);
 }
 
+void darken_column(Image& image, std::size_t x) {
+    if (x >= image.width)
+        return;
+    for (std::size_t y = 0; y < image.height; ++y)
+        darken_pixel(image, x, y);
+}
+
+void darken_row(Image& image, std::size_t y) {
+    if (y >= image.height)
+        return;
+    for (std::size_t x = 0; x < image.width; ++x)
+        darken_pixel(image, x, y);
+}
+
 void draw_sector_lines(Image& image, const MapExtent& extent) {
     const auto pixel_of = [&](std::size_t sectors) {
         const double metres = static_cast<double>(sectors) * sector_size_m;
         return static_cast<std::size_t>(metres / extent.metres_per_pixel);
     };
-    for (std::size_t i = 1; i < extent.sectors_wide(); ++i) {
-        const std::size_t x = pixel_of(i);
-        for (std::size_t y = 0; y < image.height && x < image.width; ++y)
-            darken_pixel(image, x, y);
-    }
-    for (std::size_t j = 1; j < extent.sectors_high(); ++j) {
-        const std::size_t y = pixel_of(j);
-        for (std::size_t x = 0; x < image.width && y < image.height; ++x)
-            darken_pixel(image, x, y);
-    }
+    for (std::size_t i = 1; i < extent.sectors_wide(); ++i)
+        darken_column(image, pixel_of(i));
+    for (std::size_t j = 1; j < extent.sectors_high(); ++j)
+        darken_row(image, pixel_of(j));
 }
 
-// Pixels from the first that a range touches to behind the last, within `size`.
 struct PixelRange {
     std::size_t first;
     std::size_t end;
-
-    PixelRange(double low, double high, std::size_t size)
-        : first(floor_of(low)), end(std::min(floor_of(high) + 1, size)) {}
-
-  private:
-    static std::size_t floor_of(double value) {
-        return static_cast<std::size_t>(std::max(0.0, std::floor(value)));
-    }
 };
+
+// What `radius` around `centre` touches, within `size`.
+PixelRange pixels_around(double centre, double radius, std::size_t size) {
+    const double low = std::floor(centre - radius);
+    const double high = std::floor(centre + radius);
+    const auto first = static_cast<std::size_t>(std::max(0.0, low));
+    const auto last = static_cast<std::size_t>(std::max(0.0, high));
+    return {first, std::min(last + 1, size)};
+}
 
 void draw_dot(Image& image, const MapExtent& extent, const Dot& dot) {
     const double radius_px = std::max(1.3, dot_radius_m / extent.metres_per_pixel);
     const double centre_x = extent.x_px(dot.x_m);
     const double centre_y = extent.y_px(dot.y_m);
-    const PixelRange columns(centre_x - radius_px, centre_x + radius_px, image.width);
-    const PixelRange rows(centre_y - radius_px, centre_y + radius_px, image.height);
+    const PixelRange columns = pixels_around(centre_x, radius_px, image.width);
+    const PixelRange rows = pixels_around(centre_y, radius_px, image.height);
     for (std::size_t y = rows.first; y < rows.end; ++y) {
         for (std::size_t x = columns.first; x < columns.end; ++x) {
             const double dx = static_cast<double>(x) + 0.5 - centre_x;
@@ -108,7 +117,7 @@ void draw_dots(Image& image, const MapExtent& extent, std::vector<Dot> dots) {
 
 }  // namespace
 
-void RegionPicture::add(const Sector& sector, const std::function<Float3(std::size_t, float)>& colour) {
+void RegionPicture::add(const Sector& sector, const DotColour& colour) {
     sectors.push_back({sector.i, sector.j});
     for (std::size_t p = 0; p < sector.probes.size(); ++p) {
         const Probe& probe = sector.probes[p];

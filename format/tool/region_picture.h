@@ -21,12 +21,15 @@ struct Dot {
     Float3 colour{};  // linear
 };
 
+// Of a probe: asked with its index and sky visibility.
+using DotColour = std::function<Float3(std::size_t, float)>;
+
 struct RegionPicture {
     std::vector<std::array<std::int32_t, 2>> sectors;
     std::vector<Dot> dots;
 
-    // All probes of a sector; `colour` is asked with a probe's index and sky visibility.
-    void add(const Sector& sector, const std::function<Float3(std::size_t, float)>& colour);
+    // All probes of a sector.
+    void add(const Sector& sector, const DotColour& colour);
 };
 
 // At 0 metres a pixel the longer side has about 1,600 pixels. Nothing, and a complaint, where the sectors lie

@@ -1,6 +1,8 @@
 // What changed between two sectors of one place: probes by their position, light in numbers.
 #pragma once
 
+#include "local_pairs.h"
+
 #include <drtv/sector.h>
 
 #include <array>
@@ -14,7 +16,8 @@ namespace drtv::tool {
 
 // Differences of one quantity over all its numbers, decoded.
 struct Change {
-    double largest = 0, squares = 0;
+    double largest = 0;
+    double squares = 0;
     std::size_t count = 0;
     std::string at;  // where the largest is: "probe[3].transfer.g[2][0]", by the second sector's index
 
@@ -34,19 +37,24 @@ enum Quantity : std::size_t {
 inline constexpr std::array<std::string_view, quantity_count> quantity_names = {
     "transfer", "sky_visibility", "static_irradiance", "local_transfer", "relit"};
 
-inline constexpr std::size_t no_match = SIZE_MAX;
-
 struct SectorDiff {
-    std::vector<std::size_t>
-        match;  // for each probe of the second sector, the first's at the same place, or no_match
-    std::vector<double>
-        relit;  // for each probe of the second sector, its largest relit change; 0 where it has no match
-    std::vector<std::size_t> removed;    // probes of the first sector that have no match
-    std::size_t added = 0, changed = 0;  // probes: without a match; with other numbers than their match
-    std::size_t cells = 0;               // of the grid, that name another probe
-    bool settings = false, statistics = false, convergence = false, interiors = false, grid_place = false;
-    std::size_t pairs_added = 0,
-                pairs_removed = 0;  // of local transfer; those of added and removed probes too
+    // For each probe of the second sector: the first's at the same place, or no_match; its largest relit
+    // change, 0 where it has no match.
+    std::vector<std::size_t> match;
+    std::vector<double> relit;
+    std::vector<std::size_t> removed;  // probes of the first sector that have no match
+    std::size_t added = 0;             // probes without a match
+    std::size_t changed = 0;           // probes with other numbers than their match
+    std::size_t cells = 0;             // of the grid, that name another probe
+    // Of local transfer; those of added and removed probes too.
+    std::size_t pairs_added = 0;
+    std::size_t pairs_removed = 0;
+    // Whether these differ.
+    bool settings = false;
+    bool statistics = false;
+    bool convergence = false;
+    bool interiors = false;
+    bool grid_place = false;
     std::array<Change, quantity_count> changes;
 
     [[nodiscard]] bool equal() const;
