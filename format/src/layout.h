@@ -22,13 +22,34 @@ inline constexpr std::size_t max_sections = 64;
 inline constexpr std::size_t max_raw_section_bytes = std::size_t{1} << 24;
 
 namespace header {
-inline constexpr std::size_t magic = 0, major = 4, minor = 6, file_bytes = 8, section_count = 12,
-                             sector_i = 16, sector_j = 20, z_origin = 24, probe_count = 28, z_shift = 30,
-                             reserved = 31, checksum = 56;
-}
+inline constexpr std::size_t magic = 0;
+inline constexpr std::size_t major = 4;
+inline constexpr std::size_t minor = 6;
+inline constexpr std::size_t file_bytes = 8;
+inline constexpr std::size_t section_count = 12;
+inline constexpr std::size_t sector_i = 16;
+inline constexpr std::size_t sector_j = 20;
+inline constexpr std::size_t z_origin = 24;
+inline constexpr std::size_t probe_count = 28;
+inline constexpr std::size_t z_shift = 30;
+inline constexpr std::size_t reserved = 31;
+inline constexpr std::size_t checksum = 56;
+}  // namespace header
 namespace entry {
-inline constexpr std::size_t kind = 0, version = 2, codec = 4, reserved = 5, offset = 8, stored_bytes = 12,
-                             raw_bytes = 16, reserved2 = 20, checksum = 24;
+inline constexpr std::size_t kind = 0;
+inline constexpr std::size_t version = 2;
+inline constexpr std::size_t codec = 4;
+inline constexpr std::size_t reserved = 5;
+inline constexpr std::size_t offset = 8;
+inline constexpr std::size_t stored_bytes = 12;
+inline constexpr std::size_t raw_bytes = 16;
+inline constexpr std::size_t reserved2 = 20;
+inline constexpr std::size_t checksum = 24;
+}  // namespace entry
+
+// Where line n of the table of sections stands in the file.
+[[nodiscard]] constexpr std::size_t entry_at(std::size_t n) {
+    return header_bytes + n * entry_bytes;
 }
 
 inline constexpr std::size_t bake_bytes = 48;
@@ -50,16 +71,25 @@ inline constexpr std::size_t convergence_bytes = 48;
 
 // Local transfer: header, sources, receivers, masks, codes; each part starts at a multiple of 16.
 struct LocalTransferLayout {
-    static constexpr std::size_t source_count = 0, mask_size = 2, pair_count = 4, reserved = 8,
-                                 header_bytes = 16;
-    static constexpr std::size_t source_bytes = 4, receiver_bytes = 8;
+    static constexpr std::size_t source_count = 0;
+    static constexpr std::size_t mask_size = 2;
+    static constexpr std::size_t pair_count = 4;
+    static constexpr std::size_t reserved = 8;
+    static constexpr std::size_t header_bytes = 16;
+    static constexpr std::size_t source_bytes = 4;
+    static constexpr std::size_t receiver_bytes = 8;
 
     // A row of the matrix receiver x source, a bit a source.
     [[nodiscard]] static constexpr std::size_t mask_bytes(std::size_t sources) {
         return sources <= 128 ? 16 : 32;
     }
 
-    std::size_t sources_end, receivers, receivers_end, masks, codes, end;
+    std::size_t sources_end;
+    std::size_t receivers;
+    std::size_t receivers_end;
+    std::size_t masks;
+    std::size_t codes;
+    std::size_t end;
 
     constexpr LocalTransferLayout(std::size_t probe_count, std::size_t sources, std::size_t pairs)
         : sources_end(header_bytes + sources * source_bytes),
@@ -87,14 +117,29 @@ struct LocalTransferLayout {
 // Interiors: header, one entry an interior, all vertices, all triangles; each part starts at a multiple
 // of 16.
 struct InteriorsLayout {
-    static constexpr std::size_t interior_count = 0, reserved = 2, vertex_count = 4, triangle_count = 8,
-                                 reserved2 = 12, header_bytes = 16;
-    static constexpr std::size_t entry_bytes = 32, vertex_bytes = 6, triangle_bytes = 6;
+    static constexpr std::size_t interior_count = 0;
+    static constexpr std::size_t reserved = 2;
+    static constexpr std::size_t vertex_count = 4;
+    static constexpr std::size_t triangle_count = 8;
+    static constexpr std::size_t reserved2 = 12;
+    static constexpr std::size_t header_bytes = 16;
+    static constexpr std::size_t entry_bytes = 32;
+    static constexpr std::size_t vertex_bytes = 6;
+    static constexpr std::size_t triangle_bytes = 6;
     // Within an entry.
-    static constexpr std::size_t origin = 0, shift = 12, probe = 13, entry_reserved = 14, first_vertex = 16,
-                                 vertices_of = 20, first_triangle = 24, triangles_of = 28;
+    static constexpr std::size_t origin = 0;
+    static constexpr std::size_t shift = 12;
+    static constexpr std::size_t probe = 13;
+    static constexpr std::size_t entry_reserved = 14;
+    static constexpr std::size_t first_vertex = 16;
+    static constexpr std::size_t vertices_of = 20;
+    static constexpr std::size_t first_triangle = 24;
+    static constexpr std::size_t triangles_of = 28;
 
-    std::size_t vertices, vertices_end, triangles, end;
+    std::size_t vertices;
+    std::size_t vertices_end;
+    std::size_t triangles;
+    std::size_t end;
 
     constexpr InteriorsLayout(std::size_t interior_count_,
                               std::size_t vertex_count_,

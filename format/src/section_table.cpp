@@ -1,144 +1,93 @@
-// Everything that holds before a section is looked into.
 #include "section_table.h"
 
 #include "bytes.h"
 #include "checksum.h"
+#include "file_header.h"
+#include "read_failure.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace drtv {
 namespace {
 
-SectionEntry load_entry(ByteSpan file, std::size_t at) {
+SectionEntry load_entry(ByteSpan file, std::size_t n) {
     namespace e = layout::entry;
-    return {load_u16(file, at + e::kind),
-            load_u16(file, at + e::version),
-            file[at + e::codec],
-            load_u32(file, at + e::offset),
-            load_u32(file, at + e::stored_bytes),
-            load_u32(file, at + e::raw_bytes),
-            load_u64(file, at + e::checksum)};
+    const ByteSpan bytes = file.subspan(layout::entry_at(n), layout::entry_bytes);
+    SectionEntry entry;
+    entry.kind = load_u16(bytes, e::kind);
+    entry.version = load_u16(bytes, e::version);
+    entry.codec = bytes[e::codec];
+    entry.offset = load_u32(bytes, e::offset);
+    entry.stored_bytes = load_u32(bytes, e::stored_bytes);
+    entry.raw_bytes = load_u32(bytes, e::raw_bytes);
+    entry.checksum = load_u64(bytes, e::checksum);
+    return entry;
 }
 
-ReadStatus check_header(ByteSpan file, std::size_t& section_count) {
-    namespace h = layout::header;
-    if (file.size() < 4 || load_u32(file, h::magic) != layout::magic) {
-        return fail(
-            ReadError::not_a_sector_file, 0, "not a drtv sector file: it does not start with \"DRTV\"");
-    }
-    // Magic and version come first and stay so in every version, whatever the length of its header.
-    if (file.size() >= h::file_bytes && load_u16(file, h::major) != layout::major_version) {
-        return fail(ReadError::unsupported_version,
-                    h::major,
-                    "format version " + std::to_string(load_u16(file, h::major)) + "." +
-                        std::to_string(load_u16(file, h::minor)) +
-                        " is not supported: this reader knows version 1");
-    }
-    if (file.size() < layout::header_bytes) {
-        return fail(ReadError::truncated,
-                    file.size(),
-                    "the header needs 64 bytes, the file has " + std::to_string(file.size()));
-    }
-    const auto file_bytes = load_u32(file, h::file_bytes);
-    if (file.size() < file_bytes) {
-        return fail(ReadError::truncated,
-                    file.size(),
-                    "the header says " + std::to_string(file_bytes) + " bytes, the file has " +
-                        std::to_string(file.size()));
-    }
-    if (file.size() > file_bytes) {
-        return fail(ReadError::trailing_bytes,
-                    file_bytes,
-                    "the header says " + std::to_string(file_bytes) + " bytes, the file has " +
-                        std::to_string(file.size()));
-    }
-    section_count = load_u32(file, h::section_count);
-    if (section_count > layout::max_sections ||
-        layout::header_bytes + section_count * layout::entry_bytes > file.size()) {
-        return fail(ReadError::bad_header,
-                    h::section_count,
-                    "the header says " + std::to_string(section_count) +
-                        " sections, which do not fit the file or the limit of 64");
-    }
-    std::array<std::uint8_t, h::checksum + layout::max_sections * layout::entry_bytes> covered;
-    const ByteSpan table = file.subspan(layout::header_bytes, section_count * layout::entry_bytes);
-    std::copy_n(file.begin(), h::checksum, covered.begin());
-    std::copy(table.begin(), table.end(), covered.begin() + h::checksum);
-    if (xxh64(ByteSpan(covered).first(h::checksum + table.size())) != load_u64(file, h::checksum)) {
-        return fail(ReadError::checksum_mismatch,
-                    h::checksum,
-                    "the header's checksum does not match header and table");
-    }
-    const auto i = load_i32(file, h::sector_i), j = load_i32(file, h::sector_j);
-    if (std::abs(std::int64_t{i}) > max_sector_coordinate ||
-        std::abs(std::int64_t{j}) > max_sector_coordinate) {
-        return fail(
-            ReadError::bad_header,
-            std::abs(std::int64_t{i}) > max_sector_coordinate ? h::sector_i : h::sector_j,
-            "sector (" + std::to_string(i) + ", " + std::to_string(j) + ") is beyond the limit of 16384");
-    }
-    const auto probe_count = load_u16(file, h::probe_count);
-    if (probe_count > max_probes) {
-        return fail(ReadError::bad_header,
-                    h::probe_count,
-                    "probe count " + std::to_string(probe_count) + " is over the limit of 255");
-    }
-    if (file[h::z_shift] > max_z_shift) {
-        return fail(ReadError::bad_header,
-                    h::z_shift,
-                    "z shift " + std::to_string(file[h::z_shift]) + " is over the limit of 10");
-    }
-    if (std::abs(std::int64_t{load_i32(file, h::z_origin)}) > max_z_origin_units) {
-        return fail(ReadError::bad_header,
-                    h::z_origin,
-                    "z origin " + std::to_string(load_i32(file, h::z_origin)) + " is over the limit of 2^30");
-    }
-    if (!all_zero(file.subspan(h::reserved, h::checksum - h::reserved))) {
-        return fail(ReadError::bad_header, h::reserved, "reserved header bytes are not zero");
-    }
-    return {};
+std::uint64_t end_of(const SectionEntry& entry) {
+    return std::uint64_t{entry.offset} + entry.stored_bytes;
 }
 
-ReadStatus check_entry(ByteSpan file, std::size_t at, const SectionEntry& entry, std::size_t& end) {
-    const auto name = [&] { return section_name(entry); };  // only a refusal is worth the string
-    if (!all_zero(file.subspan(at + layout::entry::reserved, 3)) ||
-        load_u32(file, at + layout::entry::reserved2) != 0) {
-        return fail(ReadError::bad_table, at, name() + ": reserved bytes of its entry are not zero");
+// Entry n; the section before it ends at `end`.
+ReadStatus check_entry(ByteSpan file, std::size_t n, const SectionEntry& entry, std::size_t end) {
+    const std::size_t at = layout::entry_at(n);
+    const bool reserved_is_zero = all_zero(file.subspan(at + layout::entry::reserved, 3)) &&
+                                  load_u32(file, at + layout::entry::reserved2) == 0;
+    if (!reserved_is_zero) {
+        return fail(
+            ReadError::bad_table, at, section_name(entry), ": reserved bytes of its entry are not zero");
     }
     if (entry.offset != layout::align(end)) {
         return fail(ReadError::bad_table,
                     at,
-                    name() + " starts at " + std::to_string(entry.offset) + ", must start at " +
-                        std::to_string(layout::align(end)));
+                    section_name(entry),
+                    " starts at ",
+                    entry.offset,
+                    ", must start at ",
+                    layout::align(end));
     }
-    if (entry.stored_bytes > file.size() || entry.offset > file.size() - entry.stored_bytes) {
+    if (end_of(entry) > file.size()) {
         return fail(ReadError::bad_table,
                     at,
-                    name() + " ends at " + std::to_string(std::uint64_t{entry.offset} + entry.stored_bytes) +
-                        ", the file has " + std::to_string(file.size()) + " bytes");
+                    section_name(entry),
+                    " ends at ",
+                    end_of(entry),
+                    ", the file has ",
+                    file.size(),
+                    " bytes");
     }
     if (entry.raw_bytes > layout::max_raw_section_bytes) {
-        return fail(
-            ReadError::bad_table,
-            at,
-            name() + " decodes to " + std::to_string(entry.raw_bytes) + " bytes, over the limit of 16 MiB");
-    }
-    if (entry.codec == static_cast<std::uint8_t>(Codec::raw) && entry.raw_bytes != entry.stored_bytes) {
         return fail(ReadError::bad_table,
                     at,
-                    name() + " is raw but says " + std::to_string(entry.stored_bytes) + " stored and " +
-                        std::to_string(entry.raw_bytes) + " raw bytes");
+                    section_name(entry),
+                    " decodes to ",
+                    entry.raw_bytes,
+                    " bytes, over the limit of 16 MiB");
     }
-    if (!all_zero(file.subspan(end, entry.offset - end))) {
-        return fail(ReadError::bad_table, end, name() + ": the padding before it is not zero");
+    const bool raw = entry.codec == static_cast<std::uint8_t>(Codec::raw);
+    if (raw && entry.raw_bytes != entry.stored_bytes) {
+        return fail(ReadError::bad_table,
+                    at,
+                    section_name(entry),
+                    " is raw but says ",
+                    entry.stored_bytes,
+                    " stored and ",
+                    entry.raw_bytes,
+                    " raw bytes");
     }
-    if (xxh64(file.subspan(entry.offset, entry.stored_bytes)) != entry.checksum) {
-        return fail(
-            ReadError::checksum_mismatch, entry.offset, name() + ": its checksum does not match its bytes");
-    }
-    end = std::size_t{entry.offset} + entry.stored_bytes;
     return {};
+}
+
+// The bytes of the section and the padding before it.
+ReadStatus check_stored(ByteSpan file, const SectionEntry& entry, std::size_t end) {
+    if (!all_zero(file.subspan(end, entry.offset - end)))
+        return fail(ReadError::bad_table, end, section_name(entry), ": the padding before it is not zero");
+    if (xxh64(file.subspan(entry.offset, entry.stored_bytes)) == entry.checksum)
+        return {};
+    return fail(ReadError::checksum_mismatch,
+                entry.offset,
+                section_name(entry),
+                ": its checksum does not match its bytes");
 }
 
 }  // namespace
@@ -175,26 +124,33 @@ const SectionEntry* SectionTable::find(SectionKind kind) const {
 
 ReadStatus load_section_table(ByteSpan file, SectionTable& table) {
     table.count = 0;
-    std::size_t section_count = 0;
-    if (ReadStatus status = check_header(file, section_count); !status.ok())
+    if (ReadStatus status = check_header(file); !status.ok())
         return status;
-    std::size_t end = layout::header_bytes + section_count * layout::entry_bytes;
+    const std::size_t section_count = load_u32(file, layout::header::section_count);
+    std::size_t end = layout::entry_at(section_count);
     for (std::size_t n = 0; n < section_count; ++n) {
-        const std::size_t at = layout::header_bytes + n * layout::entry_bytes;
-        const SectionEntry entry = load_entry(file, at);
-        if (ReadStatus status = check_entry(file, at, entry, end); !status.ok())
+        const SectionEntry entry = load_entry(file, n);
+        if (ReadStatus status = check_entry(file, n, entry, end); !status.ok())
             return status;
-        if (table.find(static_cast<SectionKind>(entry.kind)) != nullptr)
-            return fail(ReadError::bad_table, at, section_name(entry) + " stands twice in the table");
-        table.entries[table.count++] = entry;
+        if (ReadStatus status = check_stored(file, entry, end); !status.ok())
+            return status;
+        if (table.find(static_cast<SectionKind>(entry.kind)) != nullptr) {
+            return fail(
+                ReadError::bad_table, layout::entry_at(n), section_name(entry), " stands twice in the table");
+        }
+        table.entries[table.count] = entry;
+        ++table.count;
+        end = static_cast<std::size_t>(end_of(entry));
     }
-    if (end != file.size()) {
-        return fail(ReadError::bad_table,
-                    end,
-                    "the last section ends at " + std::to_string(end) + ", the file has " +
-                        std::to_string(file.size()) + " bytes");
-    }
-    return {};
+    if (end == file.size())
+        return {};
+    return fail(ReadError::bad_table,
+                end,
+                "the last section ends at ",
+                end,
+                ", the file has ",
+                file.size(),
+                " bytes");
 }
 
 ReadStatus read_section_table(ByteSpan bytes, std::vector<SectionEntry>& entries) {

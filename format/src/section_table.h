@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <utility>
 
 namespace drtv {
 
@@ -24,10 +23,6 @@ struct SectionTable {
 
 // Checks header, table and every checksum.
 ReadStatus load_section_table(std::span<const std::uint8_t> file, SectionTable& table);
-
-[[nodiscard]] inline ReadStatus fail(ReadError error, std::uint64_t offset, std::string message) {
-    return {error, offset, std::move(message)};
-}
 
 // "grid section (kind 5)"
 [[nodiscard]] std::string section_name(const SectionEntry& entry);

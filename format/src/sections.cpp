@@ -2,6 +2,8 @@
 
 #include "bytes.h"
 #include "local_filter.h"
+#include "read_failure.h"
+#include "sentence.h"
 
 #include <drtv/sector.h>
 
@@ -17,7 +19,8 @@ using Local = layout::LocalTransferLayout;
 constexpr std::uint16_t last_required_kind = static_cast<std::uint16_t>(SectionKind::statistics);
 
 struct SizeRange {
-    std::size_t least, most;
+    std::size_t min;
+    std::size_t max;
 };
 
 // What a section may have in raw bytes. The content says more where that is a range.
@@ -74,51 +77,99 @@ bool unpack_frame(ByteSpan stored, std::vector<std::uint8_t>& out) {
     return true;
 }
 
-ReadStatus decode(
-    ByteSpan file, const SectionEntry& entry, std::size_t probe_count, Unpacked* unpacked, Section& section) {
-    const auto refuse = [&](const std::string& what) {
-        return fail(ReadError::bad_section, entry.offset, section_name(entry) + what);
-    };
-    const SizeRange size = raw_size(static_cast<SectionKind>(entry.kind), probe_count);
-    if (entry.raw_bytes < size.least || entry.raw_bytes > size.most) {
-        return refuse(" has " + std::to_string(entry.raw_bytes) + " bytes, must have " +
-                      std::to_string(size.least) +
-                      (size.least == size.most ? "" : " to " + std::to_string(size.most)));
+struct SectionSource {
+    ByteSpan file;
+    const SectionEntry& entry;
+    std::size_t probe_count;
+
+    [[nodiscard]] ByteSpan stored() const { return file.subspan(entry.offset, entry.stored_bytes); }
+    [[nodiscard]] bool filtered() const { return entry.version == layout::filtered_local_version; }
+
+    template <class... Parts>
+    [[nodiscard]] ReadStatus refuse(const Parts&... parts) const {
+        return fail(ReadError::bad_section, entry.offset, section_name(entry), parts...);
     }
-    const ByteSpan stored = file.subspan(entry.offset, entry.stored_bytes);
+};
+
+ReadStatus check_raw_size(const SectionSource& source) {
+    const SectionEntry& entry = source.entry;
+    const SizeRange size = raw_size(static_cast<SectionKind>(entry.kind), source.probe_count);
+    if (entry.raw_bytes >= size.min && entry.raw_bytes <= size.max)
+        return {};
+    const std::string to_max = size.min == size.max ? "" : sentence(" to ", size.max);
+    return source.refuse(" has ", entry.raw_bytes, " bytes, must have ", size.min, to_max);
+}
+
+ReadStatus check_codec(const SectionSource& source) {
+    const SectionEntry& entry = source.entry;
     const auto codec = static_cast<Codec>(entry.codec);
-    const bool filtered = entry.version == layout::filtered_local_version;
-    section.place = {entry.offset, codec == Codec::raw};
+    const bool plain = codec == Codec::raw || codec == Codec::zstd;
+    const bool known = source.filtered() ? codec == Codec::filtered : plain;
+    if (known)
+        return {};
+    return source.refuse(" of version ", entry.version, " has the unknown codec ", entry.codec);
+}
+
+ReadStatus unpack(const SectionSource& source, std::vector<std::uint8_t>& raw) {
+    const ByteSpan stored = source.stored();
+    const std::size_t raw_bytes = source.entry.raw_bytes;
+    const bool filtered = source.filtered();
+    if (!is_one_frame(stored))
+        return source.refuse(": its ", stored.size(), " bytes are not one whole zstd frame");
+    raw.resize(filtered ? max_filtered_bytes(raw_bytes) : raw_bytes);
+    const bool unpacked = unpack_frame(stored, raw);
+    const bool right_size = filtered || raw.size() == raw_bytes;
+    if (!unpacked || !right_size)
+        return source.refuse(": its zstd frame does not decode to ", raw_bytes, " bytes");
+    if (!filtered)
+        return {};
+    const std::vector<std::uint8_t> planes = std::move(raw);
+    if (unfilter_local(planes, source.probe_count, raw_bytes, raw))
+        return {};
+    return source.refuse(": the ",
+                         planes.size(),
+                         " bytes of its zstd frame are not a filtered section of ",
+                         raw_bytes,
+                         " bytes");
+}
+
+ReadStatus decode(const SectionSource& source, Unpacked* unpacked, Section& section) {
+    const SectionEntry& entry = source.entry;
+    if (ReadStatus status = check_raw_size(source); !status.ok())
+        return status;
+    if (ReadStatus status = check_codec(source); !status.ok())
+        return status;
+    const bool is_raw = static_cast<Codec>(entry.codec) == Codec::raw;
+    section.place = {entry.offset, is_raw};
     section.present = true;
-    if (filtered ? codec != Codec::filtered : codec != Codec::raw && codec != Codec::zstd) {
-        return refuse(" of version " + std::to_string(entry.version) + " has the unknown codec " +
-                      std::to_string(entry.codec));
-    }
-    if (codec == Codec::raw) {
-        section.raw = stored;
+    if (is_raw) {
+        section.raw = source.stored();
         return {};
     }
-    if (unpacked == nullptr)
+    if (unpacked == nullptr) {
         return fail(ReadError::compressed,
                     entry.offset,
-                    section_name(entry) + " is compressed, unpack the file first");
-    if (!is_one_frame(stored))
-        return refuse(": its " + std::to_string(stored.size()) + " bytes are not one whole zstd frame");
+                    section_name(entry),
+                    " is compressed, unpack the file first");
+    }
     std::vector<std::uint8_t>& raw = (*unpacked)[entry.kind];
-    raw.resize(filtered ? max_filtered_bytes(entry.raw_bytes) : entry.raw_bytes);
-    if (!unpack_frame(stored, raw) || (!filtered && raw.size() != entry.raw_bytes)) {
-        return refuse(": its zstd frame does not decode to " + std::to_string(entry.raw_bytes) + " bytes");
-    }
-    if (filtered) {
-        const std::vector<std::uint8_t> planes = std::move(raw);
-        if (!unfilter_local(planes, probe_count, entry.raw_bytes, raw)) {
-            return refuse(": the " + std::to_string(planes.size()) +
-                          " bytes of its zstd frame are not a filtered section of " +
-                          std::to_string(entry.raw_bytes) + " bytes");
-        }
-    }
+    if (ReadStatus status = unpack(source, raw); !status.ok())
+        return status;
     section.raw = raw;
     return {};
+}
+
+ReadStatus check_required(const SectionEntry* entry, std::uint16_t kind) {
+    if (entry == nullptr)
+        return fail(ReadError::missing_section, 0, "the ", name_of_section(kind), " section is missing");
+    if (entry->version == 1)
+        return {};
+    return fail(ReadError::unsupported_version,
+                entry->offset,
+                section_name(*entry),
+                " has version ",
+                entry->version,
+                ", this reader knows 1");
 }
 
 }  // namespace
@@ -126,29 +177,22 @@ ReadStatus decode(
 ReadStatus load_sections(ByteSpan file, SectionTable& table, Unpacked* unpacked, Sections& sections) {
     if (ReadStatus status = load_section_table(file, table); !status.ok())
         return status;
-    const auto minor = load_u16(file, layout::header::minor);
-    sections.probe_count = load_u16(file, layout::header::probe_count);
+    const std::uint16_t minor = load_u16(file, layout::header::minor);
+    const std::size_t probe_count = load_u16(file, layout::header::probe_count);
+    sections.probe_count = probe_count;
     for (std::uint16_t k = 1; k < known_kinds; ++k) {
         const auto kind = static_cast<SectionKind>(k);
         const SectionEntry* entry = table.find(kind);
         if (k <= last_required_kind) {
-            if (entry == nullptr)
-                return fail(ReadError::missing_section,
-                            0,
-                            "the " + std::string(name_of_section(k)) + " section is missing");
-            if (entry->version != 1) {
-                return fail(ReadError::unsupported_version,
-                            entry->offset,
-                            section_name(*entry) + " has version " + std::to_string(entry->version) +
-                                ", this reader knows 1");
-            }
+            if (ReadStatus status = check_required(entry, k); !status.ok())
+                return status;
         } else if (entry == nullptr || !is_known(*entry, minor)) {
             continue;
         }
         Section& section = sections.of_kind[k];
-        if (ReadStatus status = decode(file, *entry, sections.probe_count, unpacked, section); !status.ok())
+        if (ReadStatus status = decode({file, *entry, probe_count}, unpacked, section); !status.ok())
             return status;
-        if (ReadStatus status = check_content(kind, section, sections.probe_count); !status.ok())
+        if (ReadStatus status = check_content(kind, section, probe_count); !status.ok())
             return status;
     }
     return {};
