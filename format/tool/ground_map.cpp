@@ -88,17 +88,13 @@ Ground ground_at(const Buckets& buckets, double x_m, double y_m) {
 GroundMap::GroundMap(const MapExtent& extent, const std::vector<Dot>& dots)
     : width_(extent.width), height_(extent.height), run_m_(static_cast<float>(extent.metres_per_pixel)) {
     const Buckets buckets(extent, dots);
-    ground_.reserve(width_ * height_);
+    ground_.resize(width_ * height_);
+    auto pixel = ground_.begin();
     for (std::size_t y = 0; y < height_; ++y) {
+        const double y_m = extent.y_m(y);
         for (std::size_t x = 0; x < width_; ++x)
-            ground_.push_back(ground_at(buckets, extent.x_m(x), extent.y_m(y)));
+            *pixel++ = ground_at(buckets, extent.x_m(x), y_m);
     }
-}
-
-const Ground& GroundMap::at(std::size_t x, std::size_t y) const {
-    const std::size_t column = std::min(x, width_ - 1);
-    const std::size_t row = std::min(y, height_ - 1);
-    return ground_[row * width_ + column];
 }
 
 float GroundMap::shade(std::size_t x, std::size_t y) const {

@@ -4,6 +4,7 @@
 #include "map_extent.h"
 #include "region_picture.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -21,7 +22,11 @@ class GroundMap {
     GroundMap(const MapExtent& extent, const std::vector<Dot>& dots);
 
     // Beyond the last column or row, that of the last pixel.
-    [[nodiscard]] const Ground& at(std::size_t x, std::size_t y) const;
+    [[nodiscard]] const Ground& at(std::size_t x, std::size_t y) const {
+        const std::size_t column = std::min(x, width_ - 1);
+        const std::size_t row = std::min(y, height_ - 1);
+        return ground_[row * width_ + column];
+    }
 
     // Lambert shading from the north-west, as relief maps are drawn. REQUIRES: there is ground.
     [[nodiscard]] float shade(std::size_t x, std::size_t y) const;

@@ -15,24 +15,6 @@ std::size_t pixels_of(int sectors, double metres_per_pixel) {
 
 }  // namespace
 
-double MapExtent::x_m(std::size_t px) const {
-    const double pixels = static_cast<double>(px) + 0.5;
-    return i0 * sector_size_m + pixels * metres_per_pixel;
-}
-
-double MapExtent::y_m(std::size_t py) const {
-    const double pixels = static_cast<double>(py) + 0.5;
-    return j1 * sector_size_m - pixels * metres_per_pixel;
-}
-
-double MapExtent::x_px(double x_m) const {
-    return (x_m - i0 * sector_size_m) / metres_per_pixel;
-}
-
-double MapExtent::y_px(double y_m) const {
-    return (j1 * sector_size_m - y_m) / metres_per_pixel;
-}
-
 MapExtent measure(std::span<const std::array<std::int32_t, 2>> sectors, double metres_per_pixel) {
     const auto [first_i, first_j] = sectors.front();
     MapExtent e{first_i, first_j, first_i + 1, first_j + 1, metres_per_pixel, 0, 0};

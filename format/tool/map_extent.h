@@ -1,6 +1,8 @@
 // The part of the world that a picture shows, and where its pixels lie.
 #pragma once
 
+#include <drtv/conventions.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,12 +24,18 @@ struct MapExtent {
     [[nodiscard]] std::size_t sectors_high() const { return static_cast<std::size_t>(j1 - j0); }
 
     // World position of a pixel's centre; rows run from the north (large y) down.
-    [[nodiscard]] double x_m(std::size_t px) const;
-    [[nodiscard]] double y_m(std::size_t py) const;
+    [[nodiscard]] double x_m(std::size_t px) const {
+        const double pixels = static_cast<double>(px) + 0.5;
+        return i0 * sector_size_m + pixels * metres_per_pixel;
+    }
+    [[nodiscard]] double y_m(std::size_t py) const {
+        const double pixels = static_cast<double>(py) + 0.5;
+        return j1 * sector_size_m - pixels * metres_per_pixel;
+    }
 
     // The inverse, in pixels.
-    [[nodiscard]] double x_px(double x_m) const;
-    [[nodiscard]] double y_px(double y_m) const;
+    [[nodiscard]] double x_px(double x_m) const { return (x_m - i0 * sector_size_m) / metres_per_pixel; }
+    [[nodiscard]] double y_px(double y_m) const { return (j1 * sector_size_m - y_m) / metres_per_pixel; }
 };
 
 // Around all sectors (i, j). At 0 metres a pixel the longer side has 1600 pixels; however far apart the

@@ -5,6 +5,7 @@
 #include "map_extent.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -23,23 +24,32 @@ std::uint8_t encode_srgb(float linear) {
     return static_cast<std::uint8_t>(s * 255 + 0.5f);
 }
 
-void put_pixel(Image& image, std::size_t x, std::size_t y, const Float3& linear) {
-    std::ranges::transform(linear, image.at(x, y), encode_srgb);
+using Pixel = std::array<std::uint8_t, 3>;
+
+Pixel encode_pixel(const Float3& linear) {
+    return {encode_srgb(linear[0]), encode_srgb(linear[1]), encode_srgb(linear[2])};
 }
 
+void put_pixel(Image& image, std::size_t x, std::size_t y, const Pixel& pixel) {
+    std::ranges::copy(pixel, image.at(x, y));
+}
+
+// REQUIRES: there is ground.
 Float3 ground_colour(const GroundMap& ground, std::size_t x, std::size_t y) {
     const Ground& here = ground.at(x, y);
-    if (here.weight <= 0)
-        return empty_colour;
     const float lit = 0.15f + 0.85f * ground.shade(x, y);
     const float grey = 0.22f * here.sky_visibility * here.sky_visibility * lit;
     return {grey, grey, grey * 1.05f};
 }
 
 void draw_background(Image& image, const GroundMap& ground) {
+    const Pixel empty = encode_pixel(empty_colour);
     for (std::size_t y = 0; y < image.height; ++y) {
-        for (std::size_t x = 0; x < image.width; ++x)
-            put_pixel(image, x, y, ground_colour(ground, x, y));
+        for (std::size_t x = 0; x < image.width; ++x) {
+            const bool has_ground = ground.at(x, y).weight > 0;
+            const Pixel pixel = has_ground ? encode_pixel(ground_colour(ground, x, y)) : empty;
+            put_pixel(image, x, y, pixel);
+        }
     }
 }
 
@@ -89,6 +99,8 @@ PixelRange pixels_around(double centre, double radius, std::size_t size) {
 }
 
 void draw_dot(Image& image, const MapExtent& extent, const Dot& dot) {
+    constexpr Pixel white = {255, 255, 255};
+    const Pixel colour = encode_pixel(dot.colour);
     const double radius_px = std::max(1.3, dot_radius_m / extent.metres_per_pixel);
     const double centre_x = extent.x_px(dot.x_m);
     const double centre_y = extent.y_px(dot.y_m);
@@ -103,7 +115,7 @@ void draw_dot(Image& image, const MapExtent& extent, const Dot& dot) {
                 continue;
             // Hand-placed probes have a white rim.
             const bool rim = dot.kind == ProbeKind::manual && distance_px > radius_px - 1;
-            put_pixel(image, x, y, rim ? Float3{1, 1, 1} : dot.colour);
+            put_pixel(image, x, y, rim ? white : colour);
         }
     }
 }
