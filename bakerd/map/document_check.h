@@ -1,8 +1,8 @@
 // Checks a glTF document's JSON before tinygltf sees it: what tinygltf skips over silently, or trusts.
 #pragma once
 
-#include <cstddef>
-#include <optional>
+#include "bakerd/map/buffer_check.h"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,14 +10,6 @@
 #include <tl/expected.hpp>
 
 namespace drtv::map {
-
-// Bytes that lie outside the JSON.
-struct OutsideBytes {
-    std::string element;  // "buffer 0", for messages
-    std::optional<std::string>
-        path;  // decoded, relative to the document's folder; without one, the GLB's binary chunk
-    std::optional<std::size_t> size_bytes;  // a buffer's byteLength; an image has its whole file
-};
 
 struct CheckedDocument {
     // The document for tinygltf. Numbers stand as it wants them (an index written as 3.0 is 3), what no bake

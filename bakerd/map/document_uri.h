@@ -10,6 +10,8 @@
 
 namespace drtv::map {
 
+using SizeBytes = std::optional<std::size_t>;
+
 // What is wrong with a path that must name a file in the map's folder or below: "the path '../x' leaves the
 // map's folder"; nothing when it is fine.
 [[nodiscard]] std::optional<std::string> path_problem(const std::string& path);
@@ -22,6 +24,6 @@ namespace drtv::map {
 // A data uri in the one form that tinygltf reads whatever its media type, cut to `size_bytes` of data where
 // that is given. The sentence says what is wrong: not base64, no data, or too short.
 [[nodiscard]] tl::expected<std::string, std::string> plain_data_uri(std::string_view uri,
-                                                                    std::optional<std::size_t> size_bytes);
+                                                                    SizeBytes size_bytes);
 
 }  // namespace drtv::map

@@ -2,6 +2,7 @@
 
 #include "bakerd/map/document_check.h"
 #include "bakerd/map/document_uri.h"
+#include "bakerd/map/glb.h"
 
 #include <fmt/format.h>
 
@@ -14,52 +15,6 @@
 namespace drtv::map {
 namespace {
 
-std::uint32_t load_u32(const FileBytes& bytes, std::size_t at) {
-    return bytes[at] | std::uint32_t{bytes[at + 1]} << 8 | std::uint32_t{bytes[at + 2]} << 16 |
-           std::uint32_t{bytes[at + 3]} << 24;
-}
-
-struct GlbChunks {
-    std::string_view json;
-    std::optional<std::span<const std::uint8_t>> binary;
-};
-
-// The chunks of a GLB, with its framing checked (glTF 2.0, section 4). Chunks of unknown types are passed
-// over.
-tl::expected<GlbChunks, std::string> glb_chunks(const FileBytes& bytes) {
-    if (bytes.size() < 20)
-        return tl::unexpected(fmt::format("a GLB file has at least 20 bytes, it has {}", bytes.size()));
-    if (load_u32(bytes, 4) != 2)
-        return tl::unexpected(fmt::format("it is GLB version {}, only 2 is supported", load_u32(bytes, 4)));
-    // What follows the length in the header is not part of the GLB.
-    const std::size_t length = load_u32(bytes, 8);
-    if (length < 20 || length > bytes.size())
-        return tl::unexpected(fmt::format("its GLB header says {} bytes, it has {}", length, bytes.size()));
-    constexpr std::uint32_t json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
-    if (load_u32(bytes, 16) != json_chunk)
-        return tl::unexpected(std::string("its first GLB chunk is not JSON"));
-    GlbChunks chunks;
-    for (std::size_t at = 12; at < length;) {
-        if (length - at < 8)
-            return tl::unexpected(fmt::format("the GLB chunk header at byte {} is cut off", at));
-        const std::uint32_t size = load_u32(bytes, at), type = load_u32(bytes, at + 4);
-        if (size > length - at - 8)
-            return tl::unexpected(fmt::format("the GLB chunk at byte {} ends at {}, the GLB has {} bytes",
-                                              at,
-                                              at + 8 + std::uint64_t{size},
-                                              length));
-        if (at > 12 && (type == json_chunk || (type == binary_chunk && chunks.binary)))
-            return tl::unexpected(fmt::format("the GLB chunk at byte {} stands twice", at));
-        const std::span chunk = std::span(bytes).subspan(at + 8, size);
-        if (type == json_chunk)
-            chunks.json = {reinterpret_cast<const char*>(chunk.data()), chunk.size()};
-        if (type == binary_chunk)
-            chunks.binary = chunk;
-        at += 8 + std::size_t{size};
-    }
-    return chunks;
-}
-
 // What tinygltf's callbacks read from.
 struct FileAccess {
     const FileSource& files;
@@ -69,32 +24,44 @@ struct FileAccess {
     std::string missing;  // the first sentence on a buffer that could not be read
 };
 
+tl::expected<FileBytes, std::string> read_source(const FileAccess& access, const OutsideBytes& wanted) {
+    if (wanted.path)
+        return access.files(access.folder + *wanted.path);
+    if (!access.binary_chunk)
+        return tl::unexpected(std::string("it has no uri, and the file no binary chunk"));
+    return FileBytes(access.binary_chunk->begin(), access.binary_chunk->end());
+}
+
 tl::expected<FileBytes, std::string> read_outside(const FileAccess& access, const OutsideBytes& wanted) {
     const auto fail = [&](const std::string& why) {
         return tl::unexpected(fmt::format("{}: {}", wanted.element, why));
     };
-    FileBytes bytes;
-    if (wanted.path) {
-        auto read = access.files(access.folder + *wanted.path);
-        if (!read)
-            return fail(read.error());
-        bytes = std::move(*read);
-    } else {
-        if (!access.binary_chunk)
-            return fail("it has no uri, and the file no binary chunk");
-        bytes.assign(access.binary_chunk->begin(), access.binary_chunk->end());
-    }
+    auto bytes = read_source(access, wanted);
+    if (!bytes)
+        return fail(bytes.error());
     const std::string source = wanted.path ? "'" + *wanted.path + "'" : "the binary chunk";
-    if (bytes.size() > max_file_bytes)
-        return fail(
-            fmt::format("{} has {} bytes, over the limit of {}", source, bytes.size(), max_file_bytes));
-    if (wanted.size_bytes) {
-        if (bytes.size() < *wanted.size_bytes)
-            return fail(
-                fmt::format("{} has {} bytes, byteLength says {}", source, bytes.size(), *wanted.size_bytes));
-        bytes.resize(*wanted.size_bytes);  // it may be longer
-    }
+    const std::size_t size = bytes->size();
+    if (size > max_file_bytes)
+        return fail(fmt::format("{} has {} bytes, over the limit of {}", source, size, max_file_bytes));
+    if (!wanted.size_bytes)
+        return bytes;
+    if (size < *wanted.size_bytes)
+        return fail(fmt::format("{} has {} bytes, byteLength says {}", source, size, *wanted.size_bytes));
+    bytes->resize(*wanted.size_bytes);  // it may be longer
     return bytes;
+}
+
+// Uris are places in `outside`; tinygltf may put "./" before one.
+const OutsideBytes* outside_named(const FileAccess& access, std::string_view path) {
+    if (path.starts_with("./"))
+        path.remove_prefix(2);
+    const char* const path_end = path.data() + path.size();
+    std::size_t place = 0;
+    const auto [end, error] = std::from_chars(path.data(), path_end, place);
+    const bool is_number = error == std::errc() && end == path_end;
+    if (!is_number || place >= access.outside.size())
+        return nullptr;
+    return &access.outside[place];
 }
 
 bool file_exists(const std::string&, void*) {
@@ -109,16 +76,13 @@ bool refuse_write(std::string*, const std::string&, const std::vector<unsigned c
 
 bool read_whole(std::vector<unsigned char>* out, std::string*, const std::string& path, void* user) {
     auto& access = *static_cast<FileAccess*>(user);
-    // Uris are places in `outside`; tinygltf may put "./" before one.
-    const std::string_view digits = std::string_view(path).substr(path.starts_with("./") ? 2 : 0);
-    std::size_t place = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), place);
-    if (error != std::errc() || end != digits.data() + digits.size() || place >= access.outside.size())
+    const OutsideBytes* wanted = outside_named(access, path);
+    if (wanted == nullptr)
         return false;
-    auto bytes = read_outside(access, access.outside[place]);
+    auto bytes = read_outside(access, *wanted);
     if (!bytes) {
         // An image may be missing as long as no material wants it.
-        if (access.outside[place].size_bytes && access.missing.empty())
+        if (wanted->size_bytes && access.missing.empty())
             access.missing = bytes.error();
         return false;
     }
@@ -149,6 +113,49 @@ std::string first_line(std::string text) {
     return text.substr(0, 300);
 }
 
+// The JSON and the binary chunk of a file of either kind.
+tl::expected<GlbChunks, std::string> chunks_of(const FileBytes& bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    GlbChunks chunks{text, std::nullopt};
+    if (text.starts_with("glTF")) {
+        const auto found = glb_chunks(bytes);
+        if (!found)
+            return found;
+        chunks = *found;
+    }
+    const std::size_t first = chunks.json.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos || chunks.json[first] != '{')
+        return tl::unexpected(
+            std::string("it is not a glTF file: it begins neither with JSON nor with a GLB header"));
+    return chunks;
+}
+
+std::string folder_of(const std::string& path) {
+    const std::size_t slash = path.rfind('/');
+    return slash == std::string::npos ? "" : path.substr(0, slash + 1);
+}
+
+tl::expected<tinygltf::Model, std::string> load_model(const std::string& json, FileAccess& access) {
+    tinygltf::TinyGLTF loader;
+    loader.SetImageLoader(keep_encoded_image, nullptr);
+    loader.SetFsCallbacks({file_exists, keep_path, read_whole, refuse_write, &access});
+    tinygltf::Model model;
+    std::string error;
+    std::string warning;
+    bool loaded = false;
+    try {
+        const auto size = static_cast<unsigned>(json.size());
+        loaded = loader.LoadASCIIFromString(&model, &error, &warning, json.data(), size, "");
+    } catch (const std::exception& exception) {
+        error = exception.what();
+    }
+    if (loaded)
+        return model;
+    if (!access.missing.empty())
+        return tl::unexpected(access.missing);
+    return tl::unexpected("it cannot be loaded: " + first_line(error));
+}
+
 }  // namespace
 
 tl::expected<GltfDocument, std::string> load_document(const std::string& path, const FileSource& files) {
@@ -162,45 +169,19 @@ tl::expected<GltfDocument, std::string> load_document(const std::string& path, c
         return tl::unexpected(bytes.error());
     if (bytes->size() > max_file_bytes)
         return fail(fmt::format("it has {} bytes, over the limit of {}", bytes->size(), max_file_bytes));
-
-    GlbChunks chunks{{reinterpret_cast<const char*>(bytes->data()), bytes->size()}, std::nullopt};
-    if (chunks.json.starts_with("glTF")) {
-        const auto found = glb_chunks(*bytes);
-        if (!found)
-            return fail(found.error());
-        chunks = *found;
-    }
-    const std::size_t first = chunks.json.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos || chunks.json[first] != '{')
-        return fail("it is not a glTF file: it begins neither with JSON nor with a GLB header");
-    const auto checked = check_document(chunks.json);
+    const auto chunks = chunks_of(*bytes);
+    if (!chunks)
+        return fail(chunks.error());
+    const auto checked = check_document(chunks->json);
     if (!checked)
         return fail(checked.error());
     if (checked->json.size() > max_file_bytes)
         return fail("its JSON is too long");
-
-    FileAccess access{files,
-                      path.find('/') == std::string::npos ? "" : path.substr(0, path.rfind('/') + 1),
-                      checked->outside,
-                      chunks.binary,
-                      ""};
-    tinygltf::TinyGLTF loader;
-    loader.SetImageLoader(keep_encoded_image, nullptr);
-    loader.SetFsCallbacks({file_exists, keep_path, read_whole, refuse_write, &access});
-    std::string error, warning;
-    bool loaded = false;
-    try {
-        loaded = loader.LoadASCIIFromString(&document.model,
-                                            &error,
-                                            &warning,
-                                            checked->json.data(),
-                                            static_cast<unsigned>(checked->json.size()),
-                                            "");
-    } catch (const std::exception& exception) {
-        error = exception.what();
-    }
-    if (!loaded)
-        return fail(!access.missing.empty() ? access.missing : "it cannot be loaded: " + first_line(error));
+    FileAccess access{files, folder_of(path), checked->outside, chunks->binary, ""};
+    auto model = load_model(checked->json, access);
+    if (!model)
+        return fail(model.error());
+    document.model = std::move(*model);
     return document;
 }
 

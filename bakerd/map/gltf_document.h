@@ -5,7 +5,9 @@
 
 #include <tiny_gltf.h>
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include <tl/expected.hpp>
 
@@ -18,6 +20,13 @@ struct GltfDocument {
     // "island.glb: <rest>"
     [[nodiscard]] std::string at(const std::string& rest) const { return path + ": " + rest; }
 };
+
+// What an index of the document names. REQUIRES: it lies in the vector; check_document saw to the document's
+// own.
+template <class Element>
+[[nodiscard]] const Element& at_index(const std::vector<Element>& elements, int index) {
+    return elements[static_cast<std::size_t>(index)];
+}
 
 // Loads `path` and its buffers. Images are kept as encoded bytes in `Image::image`; decoding is the
 // material's.

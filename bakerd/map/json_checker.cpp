@@ -8,12 +8,22 @@
 namespace drtv::map {
 namespace {
 
-constexpr double max_index = INT32_MAX, max_count = 1099511627776;  // 2^40
+constexpr double max_index = INT32_MAX;
+constexpr double max_count = 1099511627776;  // 2^40
 
 // As the specification allows, 3.0 is a whole number too.
-bool is_whole(const Json& v, double most) {
-    return v.is_number() && v.get<double>() >= 0 && v.get<double>() <= most &&
-           v.get<double>() == std::floor(v.get<double>());
+bool is_whole(const Json& v, double max) {
+    if (!v.is_number())
+        return false;
+    const auto number = v.get<double>();
+    return number >= 0 && number <= max && number == std::floor(number);
+}
+
+bool has_type(const Json& v, Type type);
+
+bool is_array_of(const Json& v, Type type) {
+    const auto fits = [&](const Json& element) { return has_type(element, type); };
+    return v.is_array() && std::ranges::all_of(v, fits);
 }
 
 bool has_type(const Json& v, Type type) {
@@ -31,12 +41,9 @@ bool has_type(const Json& v, Type type) {
         case Type::object:
             return v.is_object();
         case Type::index_array:
-            return v.is_array() &&
-                   std::ranges::all_of(v, [](const Json& element) { return has_type(element, Type::index); });
+            return is_array_of(v, Type::index);
         case Type::number_array:
-            return v.is_array() && std::ranges::all_of(v, [](const Json& element) {
-                       return has_type(element, Type::number);
-                   });
+            return is_array_of(v, Type::number);
     }
     return false;
 }
@@ -88,37 +95,39 @@ Failure Checker::properties(Json& object,
                             std::initializer_list<Property> properties) const {
     if (!object.is_object())
         return fmt::format("{} is not an object", where);
-    for (const Property& p : properties) {
-        const auto found = object.find(p.name);
+    for (const Property& wanted : properties) {
+        const auto found = object.find(wanted.name);
         if (found == object.end()) {
-            if (p.required)
-                return fmt::format("{} has no {}", where, p.name);
+            if (wanted.required)
+                return fmt::format("{} has no {}", where, wanted.name);
             continue;
         }
-        if (!has_type(*found, p.type))
-            return fmt::format("{}: {} must be {}, it is {}", where, p.name, name_of(p.type), shown(*found));
-        if (p.length != 0 && found->size() != p.length) {
-            return fmt::format(
-                "{}: {} must have {} elements, it has {}", where, p.name, p.length, found->size());
-        }
-        if (p.refers_to != nullptr) {
-            if (Failure failure = references(*found, fmt::format("{}: {}", where, p.name), p.refers_to))
-                return failure;
-        }
-        write_plainly(*found, p.type);
+        if (Failure failure = property(*found, where, wanted))
+            return failure;
+        write_plainly(*found, wanted.type);
     }
     return {};
 }
 
+Failure Checker::property(const Json& value, const std::string& where, const Property& wanted) const {
+    if (!has_type(value, wanted.type))
+        return fmt::format(
+            "{}: {} must be {}, it is {}", where, wanted.name, name_of(wanted.type), shown(value));
+    if (wanted.length != 0 && value.size() != wanted.length) {
+        return fmt::format(
+            "{}: {} must have {} elements, it has {}", where, wanted.name, wanted.length, value.size());
+    }
+    if (wanted.refers_to == nullptr)
+        return {};
+    return references(value, fmt::format("{}: {}", where, wanted.name), wanted.refers_to);
+}
+
 Failure Checker::accessors_of(Json& attributes, const std::string& where) const {
+    const std::size_t count = size_of("accessors");
     for (const auto& [name, accessor] : attributes.items()) {
-        if (!has_type(accessor, Type::index) ||
-            accessor.get<double>() >= static_cast<double>(size_of("accessors"))) {
-            return fmt::format("{}: {} names accessor {}, the file has {}",
-                               where,
-                               name,
-                               shown(accessor),
-                               size_of("accessors"));
+        if (!has_type(accessor, Type::index) || accessor.get<double>() >= static_cast<double>(count)) {
+            return fmt::format(
+                "{}: {} names accessor {}, the file has {}", where, name, shown(accessor), count);
         }
         write_plainly(accessor, Type::index);
     }

@@ -17,13 +17,59 @@ using Failure = std::optional<std::string>;  // nothing: fine
 
 enum class Type { number, index, count, string, boolean, object, index_array, number_array };
 
+// What a member must be where it is there. Made by the functions below.
 struct Property {
     const char* name;
     Type type;
-    bool required = false;
     std::size_t length = 0;           // arrays: exact number of elements, 0: any
     const char* refers_to = nullptr;  // index or index_array: the top-level array it points into
+    bool required = false;
 };
+
+constexpr Property number_at(const char* name) {
+    return {name, Type::number};
+}
+
+// At most 2^31 - 1.
+constexpr Property index_at(const char* name) {
+    return {name, Type::index};
+}
+
+// At most 2^40.
+constexpr Property size_at(const char* name) {
+    return {name, Type::count};
+}
+
+constexpr Property string_at(const char* name) {
+    return {name, Type::string};
+}
+
+constexpr Property boolean_at(const char* name) {
+    return {name, Type::boolean};
+}
+
+constexpr Property object_at(const char* name) {
+    return {name, Type::object};
+}
+
+constexpr Property numbers_at(const char* name, std::size_t length) {
+    return {name, Type::number_array, length};
+}
+
+// An index into the top-level array.
+constexpr Property reference_at(const char* name, const char* array) {
+    return {name, Type::index, 0, array};
+}
+
+// An array of such indices.
+constexpr Property references_at(const char* name, const char* array) {
+    return {name, Type::index_array, 0, array};
+}
+
+constexpr Property required(Property property) {
+    property.required = true;
+    return property;
+}
 
 // A short form of the value for a message.
 [[nodiscard]] std::string shown(const Json& value);
@@ -50,7 +96,8 @@ class Checker {
         if (!found->is_array())
             return fmt::format("{} must be an array", array);
         for (std::size_t n = 0; n < found->size(); ++n) {
-            if (Failure failure = check((*found)[n], fmt::format("{} {}", singular, n)))
+            const std::string where = fmt::format("{} {}", singular, n);
+            if (Failure failure = check((*found)[n], where))
                 return failure;
         }
         return {};
@@ -62,6 +109,7 @@ class Checker {
     }
 
   private:
+    [[nodiscard]] Failure property(const Json& value, const std::string& where, const Property& wanted) const;
     [[nodiscard]] std::size_t size_of(const char* array) const;
     [[nodiscard]] Failure references(const Json& value, const std::string& where, const char* array) const;
 

@@ -1,0 +1,26 @@
+// Checks where a glTF document's bytes lie: buffers, buffer views, images, and the uris of them.
+#pragma once
+
+#include "bakerd/map/document_uri.h"
+#include "bakerd/map/json_checker.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace drtv::map {
+
+// Bytes that lie outside the JSON.
+struct OutsideBytes {
+    std::string element;  // "buffer 0", for messages
+    // Decoded, relative to the document's folder; without one, the GLB's binary chunk.
+    std::optional<std::string> path;
+    SizeBytes size_bytes;  // a buffer's byteLength; an image has its whole file
+};
+
+// Checks all of them, each view against its buffer too. The uri of a buffer or image outside becomes its
+// place in `outside`, to which it is added; a data uri becomes one that tinygltf reads.
+[[nodiscard]] Failure check_buffers(const Checker& check, std::vector<OutsideBytes>& outside);
+
+}  // namespace drtv::map

@@ -1,0 +1,90 @@
+#include "bakerd/map/material_check.h"
+
+#include "bakerd/map/extension_check.h"
+
+namespace drtv::map {
+namespace {
+
+Failure check_sampler(const Checker& check, Json& sampler, const std::string& where) {
+    return check.properties(sampler, where, {index_at("wrapS"), index_at("wrapT")});
+}
+
+Failure check_texture(const Checker& check, Json& texture, const std::string& where) {
+    return check.properties(
+        texture, where, {reference_at("source", "images"), reference_at("sampler", "samplers")});
+}
+
+// A texture as a material wears it.
+Failure check_texture_use(const Checker& check, Json& owner, const char* name, const std::string& where) {
+    const auto texture = owner.find(name);
+    if (texture == owner.end())
+        return {};
+    const std::initializer_list<Property> members = {
+        required(reference_at("index", "textures")), index_at("texCoord"), object_at("extensions")};
+    if (Failure failure = check.properties(*texture, where + " " + name, members))
+        return failure;
+    Json* transform = extension_of(*texture, "KHR_texture_transform");
+    if (transform == nullptr)
+        return {};
+    return check.properties(
+        *transform,
+        where + ": KHR_texture_transform",
+        {numbers_at("offset", 2), numbers_at("scale", 2), number_at("rotation"), index_at("texCoord")});
+}
+
+Failure check_material_extensions(const Checker& check, Json& material, const std::string& where) {
+    if (Json* strength = extension_of(material, "KHR_materials_emissive_strength")) {
+        const std::string inner = where + ": KHR_materials_emissive_strength";
+        if (Failure failure = check.properties(*strength, inner, {number_at("emissiveStrength")}))
+            return failure;
+    }
+    if (Json* transmission = extension_of(material, "KHR_materials_diffuse_transmission")) {
+        const std::string inner = where + ": KHR_materials_diffuse_transmission";
+        const std::initializer_list<Property> members = {number_at("diffuseTransmissionFactor"),
+                                                         numbers_at("diffuseTransmissionColorFactor", 3)};
+        if (Failure failure = check.properties(*transmission, inner, members))
+            return failure;
+    }
+    return {};
+}
+
+Failure check_material(const Checker& check, Json& material, const std::string& where) {
+    const std::initializer_list<Property> members = {object_at("pbrMetallicRoughness"),
+                                                     string_at("alphaMode"),
+                                                     number_at("alphaCutoff"),
+                                                     boolean_at("doubleSided"),
+                                                     numbers_at("emissiveFactor", 3),
+                                                     object_at("emissiveTexture"),
+                                                     object_at("extensions")};
+    if (Failure failure = check.properties(material, where, members))
+        return failure;
+    if (Failure failure = check_texture_use(check, material, "emissiveTexture", where))
+        return failure;
+    if (Failure failure = check_material_extensions(check, material, where))
+        return failure;
+    const auto pbr = material.find("pbrMetallicRoughness");
+    if (pbr == material.end())
+        return {};
+    const std::initializer_list<Property> pbr_members = {numbers_at("baseColorFactor", 4),
+                                                         object_at("baseColorTexture")};
+    if (Failure failure = check.properties(*pbr, where, pbr_members))
+        return failure;
+    return check_texture_use(check, *pbr, "baseColorTexture", where);
+}
+
+}  // namespace
+
+Failure check_materials(const Checker& check) {
+    const auto with = [&](auto check_one) {
+        return [&check, check_one](Json& element, const std::string& where) {
+            return check_one(check, element, where);
+        };
+    };
+    if (Failure failure = check.each("samplers", "sampler", with(check_sampler)))
+        return failure;
+    if (Failure failure = check.each("textures", "texture", with(check_texture)))
+        return failure;
+    return check.each("materials", "material", with(check_material));
+}
+
+}  // namespace drtv::map
