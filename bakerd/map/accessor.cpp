@@ -1,10 +1,10 @@
 #include "bakerd/map/accessor.h"
 
+#include "bakerd/map/component.h"
+
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace drtv::map {
 namespace {
@@ -13,83 +13,38 @@ constexpr std::size_t max_elements = std::size_t{1} << 27;
 // An accessor without bufferView is all zeros, at no cost in the file: it needs a limit of its own.
 constexpr std::size_t max_zeros = std::size_t{1} << 20;
 
-std::size_t bytes_of(int component_type) {
-    switch (component_type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return 1;
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return 2;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        case TINYGLTF_COMPONENT_TYPE_FLOAT:
-            return 4;
-        default:
-            return 0;
-    }
-}
-
-template <class Value>
-Value load(const std::uint8_t* at) {
-    Value value;
-    std::memcpy(&value, at, sizeof value);
-    return value;
-}
-
-float load_float(const std::uint8_t* at, int component_type, bool normalized) {
-    switch (component_type) {
-        case TINYGLTF_COMPONENT_TYPE_FLOAT:
-            return load<float>(at);
-        case TINYGLTF_COMPONENT_TYPE_BYTE: {
-            const auto v = static_cast<float>(load<std::int8_t>(at));
-            return normalized ? std::max(v / 127.0f, -1.0f) : v;
-        }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return static_cast<float>(*at) / (normalized ? 255.0f : 1.0f);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: {
-            const auto v = static_cast<float>(load<std::int16_t>(at));
-            return normalized ? std::max(v / 32767.0f, -1.0f) : v;
-        }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return static_cast<float>(load<std::uint16_t>(at)) / (normalized ? 65535.0f : 1.0f);
-        default:
-            return static_cast<float>(load<std::uint32_t>(at));
-    }
-}
-
-std::uint32_t load_index(const std::uint8_t* at, int component_type) {
-    switch (component_type) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return *at;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return load<std::uint16_t>(at);
-        default:
-            return load<std::uint32_t>(at);
-    }
-}
+using Done = tl::expected<void, std::string>;
 
 // A checked run of equally spaced elements in a buffer.
 struct Run {
     const std::uint8_t* first = nullptr;
     std::size_t stride = 0;
+
+    [[nodiscard]] const std::uint8_t* at(std::size_t element) const { return first + element * stride; }
+};
+
+// What a run shall hold, and where the file says it is.
+struct Wanted {
+    int view_index;
+    std::size_t offset;
+    std::size_t count;
+    std::size_t element_bytes;
 };
 
 tl::expected<Run, std::string> locate(const GltfDocument& document,
                                       const std::string& where,
-                                      int view_index,
-                                      std::size_t offset,
-                                      std::size_t count,
-                                      std::size_t element_bytes) {
+                                      const Wanted& wanted) {
     const tinygltf::Model& model = document.model;
     const auto fail = [&](const std::string& rest) {
         return tl::unexpected(document.at(where + ": " + rest));
     };
+    const auto& [view_index, offset, count, element_bytes] = wanted;
     if (view_index < 0 || static_cast<std::size_t>(view_index) >= model.bufferViews.size())
         return fail(fmt::format("bufferView {} does not exist", view_index));
-    const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(view_index)];
+    const tinygltf::BufferView& view = at_index(model.bufferViews, view_index);
     if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size())
         return fail(fmt::format("buffer {} does not exist", view.buffer));
-    const std::vector<unsigned char>& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
+    const std::vector<unsigned char>& data = at_index(model.buffers, view.buffer).data;
     if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
         return fail(fmt::format("bufferView {} ends at {}, its buffer has {} bytes",
                                 view_index,
@@ -100,22 +55,29 @@ tl::expected<Run, std::string> locate(const GltfDocument& document,
     if (stride < element_bytes)
         return fail(
             fmt::format("the stride of {} bytes is smaller than an element of {}", stride, element_bytes));
-    // count - 1 strides and one element; sizes are below 2^40, so that nothing overflows.
-    if (count > 0 && (offset > view.byteLength || count > max_elements ||
-                      (count - 1) * stride + element_bytes > view.byteLength - offset)) {
+    // Sizes are below 2^40, so that only a count past the limit can make this overflow.
+    const std::size_t run_bytes = (count - 1) * stride + element_bytes;
+    const bool starts_past = offset > view.byteLength;
+    const bool ends_past = starts_past || count > max_elements || run_bytes > view.byteLength - offset;
+    if (count > 0 && ends_past) {
         return fail(fmt::format("its {} elements end at byte {}, bufferView {} has {}",
                                 count,
-                                offset + (count - 1) * stride + element_bytes,
+                                offset + run_bytes,
                                 view_index,
                                 view.byteLength));
     }
     return Run{data.data() + view.byteOffset + offset, stride};
 }
 
+// An accessor that exists, of as many components as wanted.
 struct Checked {
-    const tinygltf::Accessor* accessor;
+    const GltfDocument& document;
+    const tinygltf::Accessor& accessor;
     std::string where;
-    std::size_t component_bytes;
+    std::size_t components;
+    std::size_t component_size;
+
+    [[nodiscard]] std::size_t element_bytes() const { return component_size * components; }
 };
 
 tl::expected<Checked, std::string> check(const GltfDocument& document, int index, std::size_t components) {
@@ -123,82 +85,90 @@ tl::expected<Checked, std::string> check(const GltfDocument& document, int index
     const auto fail = [&](const std::string& rest) {
         return tl::unexpected(document.at(where + ": " + rest));
     };
-    if (index < 0 || static_cast<std::size_t>(index) >= document.model.accessors.size())
+    const std::vector<tinygltf::Accessor>& accessors = document.model.accessors;
+    if (index < 0 || static_cast<std::size_t>(index) >= accessors.size())
         return fail("it does not exist");
-    const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
-    const std::size_t component_bytes = bytes_of(accessor.componentType);
-    if (component_bytes == 0)
+    const tinygltf::Accessor& accessor = at_index(accessors, index);
+    const std::size_t component_size = component_bytes(accessor.componentType);
+    if (component_size == 0)
         return fail(fmt::format("component type {} is unknown", accessor.componentType));
-    if (component_count(document, index) != components)
-        return fail(fmt::format(
-            "it has {} components, {} are needed here", component_count(document, index), components));
+    const std::size_t found = component_count(document, index);
+    if (found != components)
+        return fail(fmt::format("it has {} components, {} are needed here", found, components));
     if (accessor.count > max_elements)
         return fail(fmt::format("its {} elements are over the limit of {}", accessor.count, max_elements));
     if (accessor.bufferView < 0 && accessor.count > max_zeros)
         return fail(fmt::format(
             "it has {} elements and no bufferView, over the limit of {}", accessor.count, max_zeros));
-    return Checked{&accessor, where, component_bytes};
+    return Checked{document, accessor, where, components, component_size};
+}
+
+// Visits (element index, bytes) of the replacements.
+template <class Visit>
+Done visit_sparse(const Checked& checked, Visit visit) {
+    const tinygltf::Accessor& accessor = checked.accessor;
+    const auto& indices = accessor.sparse.indices;
+    const auto& values = accessor.sparse.values;
+    const int given_count = accessor.sparse.count;
+    const auto fail = [&](const std::string& rest) {
+        return tl::unexpected(checked.document.at(checked.where + " sparse: " + rest));
+    };
+    const auto count = static_cast<std::size_t>(given_count);
+    if (given_count < 0 || count > accessor.count)
+        return fail(fmt::format("{} replacements for {} elements", given_count, accessor.count));
+    const int index_type = indices.componentType;
+    const std::size_t index_bytes = component_bytes(index_type);
+    if (index_bytes == 0 || index_type == TINYGLTF_COMPONENT_TYPE_FLOAT)
+        return fail(fmt::format("index type {} is unknown", index_type));
+    if (indices.byteOffset < 0 || values.byteOffset < 0)
+        return fail("a byte offset is negative");
+    const Wanted wanted_indices{
+        indices.bufferView, static_cast<std::size_t>(indices.byteOffset), count, index_bytes};
+    const auto index_run = locate(checked.document, checked.where + " sparse indices", wanted_indices);
+    if (!index_run)
+        return tl::unexpected(index_run.error());
+    const Wanted wanted_values{
+        values.bufferView, static_cast<std::size_t>(values.byteOffset), count, checked.element_bytes()};
+    const auto value_run = locate(checked.document, checked.where + " sparse values", wanted_values);
+    if (!value_run)
+        return tl::unexpected(value_run.error());
+    for (std::size_t n = 0; n < count; ++n) {
+        const std::uint32_t element = load_index(index_run->at(n), index_type);
+        if (element >= accessor.count)
+            return fail(fmt::format("index {} is past the {} elements", element, accessor.count));
+        visit(element, value_run->at(n));
+    }
+    return {};
 }
 
 // Visits (element index, bytes) first of the dense part, then of the sparse replacements.
 template <class Visit>
-tl::expected<void, std::string> visit_elements(const GltfDocument& document,
-                                               const Checked& checked,
-                                               std::size_t components,
-                                               Visit visit) {
-    const tinygltf::Accessor& accessor = *checked.accessor;
-    const std::size_t element_bytes = checked.component_bytes * components;
+Done visit_elements(const Checked& checked, Visit visit) {
+    const tinygltf::Accessor& accessor = checked.accessor;
     if (accessor.bufferView >= 0) {
-        const auto run = locate(
-            document, checked.where, accessor.bufferView, accessor.byteOffset, accessor.count, element_bytes);
+        const Wanted wanted{
+            accessor.bufferView, accessor.byteOffset, accessor.count, checked.element_bytes()};
+        const auto run = locate(checked.document, checked.where, wanted);
         if (!run)
             return tl::unexpected(run.error());
         for (std::size_t n = 0; n < accessor.count; ++n)
-            visit(n, run->first + n * run->stride);
+            visit(n, run->at(n));
     }
     if (!accessor.sparse.isSparse)
         return {};
-    const auto count = static_cast<std::size_t>(accessor.sparse.count);
-    const std::size_t index_bytes = bytes_of(accessor.sparse.indices.componentType);
-    const auto fail = [&](const std::string& rest) {
-        return tl::unexpected(document.at(checked.where + " sparse: " + rest));
-    };
-    if (accessor.sparse.count < 0 || count > accessor.count)
-        return fail(fmt::format("{} replacements for {} elements", accessor.sparse.count, accessor.count));
-    if (index_bytes == 0 || accessor.sparse.indices.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT)
-        return fail(fmt::format("index type {} is unknown", accessor.sparse.indices.componentType));
-    if (accessor.sparse.indices.byteOffset < 0 || accessor.sparse.values.byteOffset < 0)
-        return fail("a byte offset is negative");
-    const auto indices = locate(document,
-                                checked.where + " sparse indices",
-                                accessor.sparse.indices.bufferView,
-                                static_cast<std::size_t>(accessor.sparse.indices.byteOffset),
-                                count,
-                                index_bytes);
-    if (!indices)
-        return tl::unexpected(indices.error());
-    const auto values = locate(document,
-                               checked.where + " sparse values",
-                               accessor.sparse.values.bufferView,
-                               static_cast<std::size_t>(accessor.sparse.values.byteOffset),
-                               count,
-                               element_bytes);
-    if (!values)
-        return tl::unexpected(values.error());
-    for (std::size_t n = 0; n < count; ++n) {
-        const std::uint32_t element =
-            load_index(indices->first + n * indices->stride, accessor.sparse.indices.componentType);
-        if (element >= accessor.count)
-            return fail(fmt::format("index {} is past the {} elements", element, accessor.count));
-        visit(element, values->first + n * values->stride);
-    }
-    return {};
+    return visit_sparse(checked, visit);
+}
+
+bool can_hold_indices(int component_type) {
+    return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+           component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+           component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
 }  // namespace
 
 std::size_t component_count(const GltfDocument& document, int accessor) {
-    switch (document.model.accessors[static_cast<std::size_t>(accessor)].type) {
+    switch (at_index(document.model.accessors, accessor).type) {
         case TINYGLTF_TYPE_SCALAR:
             return 1;
         case TINYGLTF_TYPE_VEC2:
@@ -212,22 +182,22 @@ std::size_t component_count(const GltfDocument& document, int accessor) {
     }
 }
 
-tl::expected<std::vector<float>, std::string> read_floats(const GltfDocument& document,
-                                                          int index,
-                                                          std::size_t components) {
+tl::expected<Floats, std::string> read_floats(const GltfDocument& document,
+                                              int index,
+                                              std::size_t components) {
     const auto checked = check(document, index, components);
     if (!checked)
         return tl::unexpected(checked.error());
-    const tinygltf::Accessor& accessor = *checked->accessor;
-    std::vector<float> values(accessor.count * components, 0.0f);
-    const auto visited =
-        visit_elements(document, *checked, components, [&](std::size_t element, const std::uint8_t* bytes) {
-            for (std::size_t k = 0; k < components; ++k) {
-                values[element * components + k] = load_float(
-                    bytes + k * checked->component_bytes, accessor.componentType, accessor.normalized);
-            }
-        });
-    if (!visited)
+    const int type = checked->accessor.componentType;
+    const bool normalized = checked->accessor.normalized;
+    const std::size_t component_size = checked->component_size;
+    Floats values(checked->accessor.count * components, 0.0f);
+    const auto convert = [&](std::size_t element, const std::uint8_t* bytes) {
+        float* out = &values[element * components];
+        for (std::size_t k = 0; k < components; ++k)
+            out[k] = load_float(bytes + k * component_size, type, normalized);
+    };
+    if (const Done visited = visit_elements(*checked, convert); !visited)
         return tl::unexpected(visited.error());
     for (std::size_t n = 0; n < values.size(); ++n) {
         if (!std::isfinite(values[n]))
@@ -237,22 +207,19 @@ tl::expected<std::vector<float>, std::string> read_floats(const GltfDocument& do
     return values;
 }
 
-tl::expected<std::vector<std::uint32_t>, std::string> read_indices(const GltfDocument& document, int index) {
+tl::expected<Indices, std::string> read_indices(const GltfDocument& document, int index) {
     const auto checked = check(document, index, 1);
     if (!checked)
         return tl::unexpected(checked.error());
-    const int type = checked->accessor->componentType;
-    if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    const int type = checked->accessor.componentType;
+    if (!can_hold_indices(type))
         return tl::unexpected(
             document.at(fmt::format("accessor {}: component type {} cannot hold indices", index, type)));
-    }
-    std::vector<std::uint32_t> values(checked->accessor->count, 0);
-    const auto visited =
-        visit_elements(document, *checked, 1, [&](std::size_t element, const std::uint8_t* bytes) {
-            values[element] = load_index(bytes, type);
-        });
-    if (!visited)
+    Indices values(checked->accessor.count, 0);
+    const auto convert = [&](std::size_t element, const std::uint8_t* bytes) {
+        values[element] = load_index(bytes, type);
+    };
+    if (const Done visited = visit_elements(*checked, convert); !visited)
         return tl::unexpected(visited.error());
     return values;
 }

@@ -3,6 +3,7 @@
 
 #include "bakerd/map/gltf_document.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,17 +12,19 @@
 
 namespace drtv::map {
 
+using Floats = std::vector<float>;
+using Indices = std::vector<std::uint32_t>;
+
 // Elements of `components` floats each, in a row. Integers are converted as KHR_mesh_quantization and the
 // normalisation rule say. Fails when the accessor has another number of components or holds NaN or infinity.
-[[nodiscard]] tl::expected<std::vector<float>, std::string> read_floats(const GltfDocument& document,
-                                                                        int accessor,
-                                                                        std::size_t components);
+[[nodiscard]] tl::expected<Floats, std::string> read_floats(const GltfDocument& document,
+                                                            int accessor,
+                                                            std::size_t components);
 
 // Number of components of the accessor's type (VEC3: 3), or 0 for an unknown type.
 [[nodiscard]] std::size_t component_count(const GltfDocument& document, int accessor);
 
 // Scalar unsigned integers of 8, 16 or 32 bits.
-[[nodiscard]] tl::expected<std::vector<std::uint32_t>, std::string> read_indices(const GltfDocument& document,
-                                                                                 int accessor);
+[[nodiscard]] tl::expected<Indices, std::string> read_indices(const GltfDocument& document, int accessor);
 
 }  // namespace drtv::map

@@ -1,6 +1,5 @@
-// Digests cover what can change a bake and nothing else. Each begins with a tag of its own, so that two kinds
-// never give the same bytes.
-#include "bakerd/map/import_parts.h"
+// Each digest begins with a tag of its own, so that two kinds never give the same bytes.
+#include "bakerd/map/content_digest.h"
 
 #include <algorithm>
 #include <tuple>
@@ -131,7 +130,8 @@ void finish_content(Map& map) {
         return std::tuple(a.position.x, a.position.y, a.position.z) <
                std::tuple(b.position.x, b.position.y, b.position.z);
     });
-    std::vector<Digest> lights, volumes;
+    std::vector<Digest> lights;
+    std::vector<Digest> volumes;
     for (Light& light : map.lights)
         light.digest = digest_light(light);
     std::ranges::stable_sort(map.lights, {}, &Light::digest);

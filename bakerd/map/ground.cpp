@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <set>
+#include <utility>
 
 namespace drtv::map {
 namespace {
@@ -14,19 +16,24 @@ constexpr double max_coordinate = 16384;
 constexpr std::size_t max_sectors = std::size_t{1} << 20;
 // Triangle-against-sector tests of triangles that span more than a few sectors. Far above any real map, it
 // bounds the time a hostile one takes.
-constexpr std::size_t max_tests = std::size_t{1} << 26, few_sectors = 16;
+constexpr std::size_t max_tests = std::size_t{1} << 26;
+constexpr std::size_t few_sectors = 16;
 
 using Corner = glm::dvec2;
 
 // Separating axis test of a triangle's plan against a square, touching counts.
 bool overlaps_square(const std::array<Corner, 3>& triangle, Corner low, Corner high) {
     for (std::size_t k = 0; k < 3; ++k) {
-        const Corner a = triangle[k], edge = triangle[(k + 1) % 3] - a;
+        const Corner a = triangle[k];
+        const Corner edge = triangle[(k + 1) % 3] - a;
+        const Corner third = triangle[(k + 2) % 3] - a;
         const Corner normal{edge.y, -edge.x};
-        const double side_of_third = glm::dot(triangle[(k + 2) % 3] - a, normal);
+        const double side_of_third = glm::dot(third, normal);
         // How far the square reaches to both sides of the edge's line.
-        const Corner reach{normal.x > 0 ? high.x : low.x, normal.y > 0 ? high.y : low.y},
-            other{normal.x > 0 ? low.x : high.x, normal.y > 0 ? low.y : high.y};
+        const bool to_east = normal.x > 0;
+        const bool to_north = normal.y > 0;
+        const Corner reach{to_east ? high.x : low.x, to_north ? high.y : low.y};
+        const Corner other{to_east ? low.x : high.x, to_north ? low.y : high.y};
         if (side_of_third >= 0 && glm::dot(reach - a, normal) < 0)
             return false;
         if (side_of_third <= 0 && glm::dot(other - a, normal) > 0)
@@ -36,17 +43,21 @@ bool overlaps_square(const std::array<Corner, 3>& triangle, Corner low, Corner h
 }
 
 SectorCoordinate sector_of(double x_m, double y_m) {
-    return {static_cast<std::int32_t>(std::floor(x_m / sector_size_m)),
-            static_cast<std::int32_t>(std::floor(y_m / sector_size_m))};
+    const double i = std::floor(x_m / sector_size_m);
+    const double j = std::floor(y_m / sector_size_m);
+    return {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)};
 }
 
 std::size_t covered(SectorCoordinate first, SectorCoordinate last) {
-    return static_cast<std::size_t>(last.i - first.i + 1) * static_cast<std::size_t>(last.j - first.j + 1);
+    const auto columns = static_cast<std::size_t>(last.i - first.i + 1);
+    const auto rows = static_cast<std::size_t>(last.j - first.j + 1);
+    return columns * rows;
 }
 
 // The sectors that an object's bounds span, and which of them its triangles reach.
 struct Span {
-    SectorCoordinate first, last;
+    SectorCoordinate first;
+    SectorCoordinate last;
     std::vector<bool> reached;
     std::size_t missing;
 
@@ -54,19 +65,23 @@ struct Span {
         : first(low), last(high), reached(covered(low, high), false), missing(reached.size()) {}
 
     [[nodiscard]] std::size_t at(std::int32_t i, std::int32_t j) const {
-        return static_cast<std::size_t>(j - first.j) * static_cast<std::size_t>(last.i - first.i + 1) +
-               static_cast<std::size_t>(i - first.i);
+        const auto columns = static_cast<std::size_t>(last.i - first.i + 1);
+        const auto column = static_cast<std::size_t>(i - first.i);
+        const auto row = static_cast<std::size_t>(j - first.j);
+        return row * columns + column;
     }
 };
 
 // REQUIRES: the triangle lies in the span.
 void add_triangle(const std::array<Corner, 3>& triangle, Span& span, std::size_t& tests) {
-    Corner low = triangle[0], high = triangle[0];
+    Corner low = triangle[0];
+    Corner high = triangle[0];
     for (const Corner& corner : triangle) {
         low = glm::min(low, corner);
         high = glm::max(high, corner);
     }
-    const SectorCoordinate first = sector_of(low.x, low.y), last = sector_of(high.x, high.y);
+    const SectorCoordinate first = sector_of(low.x, low.y);
+    const SectorCoordinate last = sector_of(high.x, high.y);
     if (covered(first, last) > few_sectors)
         tests += covered(first, last);
     for (std::int32_t j = first.j; j <= last.j; ++j) {
@@ -98,15 +113,46 @@ bool add_object(const Map& map, const Object& object, Span& span, std::size_t& t
                 return true;
             if (tests >= max_tests)
                 return false;
-            std::array<Corner, 3> triangle;
-            for (int k = 0; k < 3; ++k) {
-                triangle[static_cast<std::size_t>(k)] =
-                    Corner(object.world_from_object * glm::vec4(primitive.positions[t[k]], 1));
-            }
-            add_triangle(triangle, span, tests);
+            const auto corner = [&](std::uint32_t vertex) {
+                return Corner(object.world_from_object * glm::vec4(primitive.positions[vertex], 1));
+            };
+            add_triangle({corner(t.x), corner(t.y), corner(t.z)}, span, tests);
         }
     }
     return true;
+}
+
+// Nothing, or a sentence on an object that lies too far out.
+std::optional<std::string> range_problem(const Object& object) {
+    const glm::vec3 low = object.bounds.low;
+    const glm::vec3 high = object.bounds.high;
+    constexpr double limit_m = max_coordinate * sector_size_m;
+    if (low.x < -limit_m || low.y < -limit_m || high.x >= limit_m || high.y >= limit_m) {
+        return fmt::format("object '{}' spans x {} to {} m, y {} to {} m, beyond the limit of {} m",
+                           object.name,
+                           low.x,
+                           high.x,
+                           low.y,
+                           high.y,
+                           limit_m);
+    }
+    if (low.z < -max_height_m || high.z > max_height_m) {
+        return fmt::format("object '{}' spans heights {} to {} m, beyond the limit of {} m",
+                           object.name,
+                           low.z,
+                           high.z,
+                           max_height_m);
+    }
+    return {};
+}
+
+void insert_reached(const Span& span, std::set<SectorCoordinate>& found) {
+    for (std::int32_t j = span.first.j; j <= span.last.j; ++j) {
+        for (std::int32_t i = span.first.i; i <= span.last.i; ++i) {
+            if (span.reached[span.at(i, j)])
+                found.insert({i, j});
+        }
+    }
 }
 
 }  // namespace
@@ -117,27 +163,10 @@ tl::expected<std::vector<SectorCoordinate>, std::string> sectors_with_ground(con
     for (const Object& object : map.objects) {
         if (object.role != Role::fixed || object.bounds.empty())
             continue;
-        const glm::vec3 low = object.bounds.low, high = object.bounds.high;
-        const double limit_m = max_coordinate * sector_size_m;
-        if (low.x < -limit_m || low.y < -limit_m || high.x >= limit_m || high.y >= limit_m) {
-            return tl::unexpected(
-                fmt::format("object '{}' spans x {} to {} m, y {} to {} m, beyond the limit of {} m",
-                            object.name,
-                            low.x,
-                            high.x,
-                            low.y,
-                            high.y,
-                            limit_m));
-        }
-        if (low.z < -max_height_m || high.z > max_height_m) {
-            return tl::unexpected(
-                fmt::format("object '{}' spans heights {} to {} m, beyond the limit of {} m",
-                            object.name,
-                            low.z,
-                            high.z,
-                            max_height_m));
-        }
-        const SectorCoordinate first = sector_of(low.x, low.y), last = sector_of(high.x, high.y);
+        if (const auto problem = range_problem(object))
+            return tl::unexpected(*problem);
+        const SectorCoordinate first = sector_of(object.bounds.low.x, object.bounds.low.y);
+        const SectorCoordinate last = sector_of(object.bounds.high.x, object.bounds.high.y);
         const std::size_t sectors = covered(first, last);
         if (sectors > max_sectors) {
             return tl::unexpected(fmt::format(
@@ -154,17 +183,12 @@ tl::expected<std::vector<SectorCoordinate>, std::string> sectors_with_ground(con
                 object.name,
                 max_tests));
         }
-        for (std::int32_t j = first.j; j <= last.j; ++j) {
-            for (std::int32_t i = first.i; i <= last.i; ++i) {
-                if (span.reached[span.at(i, j)])
-                    found.insert({i, j});
-            }
-        }
+        insert_reached(span, found);
         if (found.size() > max_sectors)
             return tl::unexpected(fmt::format("the map covers more than {} sectors", max_sectors));
     }
     std::vector<SectorCoordinate> sectors(found.begin(), found.end());
-    std::sort(sectors.begin(), sectors.end(), [](const SectorCoordinate& a, const SectorCoordinate& b) {
+    std::ranges::sort(sectors, [](const SectorCoordinate& a, const SectorCoordinate& b) {
         return std::pair(a.j, a.i) < std::pair(b.j, b.i);
     });
     return sectors;

@@ -1,7 +1,12 @@
 #include "bakerd/map/import.h"
 
+#include "bakerd/map/content_digest.h"
 #include "bakerd/map/gltf_document.h"
-#include "bakerd/map/import_parts.h"
+#include "bakerd/map/import_state.h"
+#include "bakerd/map/material_import.h"
+#include "bakerd/map/mesh_import.h"
+#include "bakerd/map/node_import.h"
+#include "bakerd/map/warning.h"
 
 #include <fmt/format.h>
 
@@ -48,10 +53,11 @@ tl::expected<Map, std::string> import_files(std::span<const std::string> paths, 
             return tl::unexpected(document.error());
         if (auto checked = check_mesh_sizes(*document); !checked)
             return tl::unexpected(checked.error());
-        const auto materials = import_materials(*document, map, shared);
+        const ImportState state{*document, map, shared};
+        const auto materials = import_materials(state);
         if (!materials)
             return tl::unexpected(materials.error());
-        if (auto imported = import_nodes(*document, *materials, map, shared); !imported)
+        if (auto imported = import_nodes(state, *materials); !imported)
             return tl::unexpected(imported.error());
         ends.push_back({path, map.volumes.size()});
     }
@@ -62,17 +68,6 @@ tl::expected<Map, std::string> import_files(std::span<const std::string> paths, 
 }
 
 }  // namespace
-
-std::string as_sentence(std::string text) {
-    constexpr std::size_t max_length = 500;
-    if (text.size() > max_length)
-        text = text.substr(0, max_length) + "...";
-    for (char& c : text) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
-            c = ' ';
-    }
-    return text;
-}
 
 tl::expected<Map, std::string> import_map(std::span<const std::string> paths, const FileSource& files) {
     return import_files(paths, files).map_error(as_sentence);

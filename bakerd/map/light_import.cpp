@@ -1,4 +1,6 @@
-#include "bakerd/map/import_parts.h"
+#include "bakerd/map/light_import.h"
+
+#include "bakerd/map/gltf_document.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +10,7 @@
 namespace drtv::map {
 
 tl::expected<Light, std::string> import_light(const tinygltf::Model& model, int number) {
-    const tinygltf::Light& source = model.lights[static_cast<std::size_t>(number)];
+    const tinygltf::Light& source = at_index(model.lights, number);
     const auto fail = [&](const std::string& rest) {
         return tl::unexpected(fmt::format("light {}: {}", number, rest));
     };

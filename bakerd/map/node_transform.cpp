@@ -6,89 +6,135 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 
+#include <cstdint>
+
 namespace drtv::map {
 namespace {
 
-tl::expected<glm::dmat4, std::string> compose(const glm::dvec3& translation,
-                                              const glm::dquat& rotation,
-                                              const glm::dvec3& scale) {
-    const double length = glm::length(rotation);
+// A transform in parts; those not given change nothing.
+struct Parts {
+    glm::dvec3 translation{0};
+    glm::dquat rotation{1, 0, 0, 0};
+    glm::dvec3 scale{1};
+};
+
+template <class Number>
+glm::dvec3 vector_at(const std::vector<Number>& numbers, std::size_t element) {
+    const Number* v = &numbers[3 * element];
+    return {v[0], v[1], v[2]};
+}
+
+// glTF writes x, y, z, w.
+template <class Number>
+glm::dquat quaternion_at(const std::vector<Number>& numbers, std::size_t element) {
+    const Number* q = &numbers[4 * element];
+    return {q[3], q[0], q[1], q[2]};
+}
+
+tl::expected<glm::dmat4, std::string> compose(const Parts& parts) {
+    const double length = glm::length(parts.rotation);
     if (!(length > 1e-6 && length < 1e6))
         return tl::unexpected(fmt::format("its rotation is a quaternion of length {}", length));
-    glm::dmat4 local(glm::mat3_cast(rotation * (1 / length)));
+    glm::dmat4 local(glm::mat3_cast(parts.rotation * (1 / length)));
     for (glm::length_t c = 0; c < 3; ++c)
-        local[c] *= scale[c];
-    local[3] = glm::dvec4(translation, 1);
+        local[c] *= parts.scale[c];
+    local[3] = glm::dvec4(parts.translation, 1);
     return local;
 }
 
-}  // namespace
-
-tl::expected<glm::dmat4, std::string> local_transform(const tinygltf::Node& node) {
-    if (node.matrix.size() == 16) {
-        glm::dmat4 local(1);
-        for (glm::length_t c = 0; c < 4; ++c) {
-            for (glm::length_t r = 0; r < 4; ++r)
-                local[c][r] = node.matrix[static_cast<std::size_t>(4 * c + r)];
-        }
-        if (local[0][3] != 0 || local[1][3] != 0 || local[2][3] != 0 || local[3][3] != 1)
-            return tl::unexpected(std::string("its matrix is not affine"));
-        return local;
+tl::expected<glm::dmat4, std::string> affine(const std::vector<double>& numbers) {
+    glm::dmat4 local(1);
+    auto number = numbers.begin();
+    for (glm::length_t c = 0; c < 4; ++c) {
+        for (glm::length_t r = 0; r < 4; ++r)
+            local[c][r] = *number++;
     }
-    const glm::dvec3 translation =
-        node.translation.size() == 3
-            ? glm::dvec3(node.translation[0], node.translation[1], node.translation[2])
-            : glm::dvec3(0);
-    const glm::dvec3 scale =
-        node.scale.size() == 3 ? glm::dvec3(node.scale[0], node.scale[1], node.scale[2]) : glm::dvec3(1);
-    glm::dquat rotation(1, 0, 0, 0);
-    if (node.rotation.size() == 4)
-        rotation = glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    return compose(translation, rotation, scale);
+    const bool is_affine = local[0][3] == 0 && local[1][3] == 0 && local[2][3] == 0 && local[3][3] == 1;
+    if (!is_affine)
+        return tl::unexpected(std::string("its matrix is not affine"));
+    return local;
 }
 
-tl::expected<std::vector<glm::dmat4>, std::string> instance_transforms(const GltfDocument& document,
-                                                                       const tinygltf::Value& extension) {
-    std::vector<float> translations, rotations, scales;
-    std::size_t count = SIZE_MAX;
-    const tinygltf::Value& attributes = extension.Get("attributes");
-    const auto read = [&](const char* name,
-                          std::size_t components,
-                          std::vector<float>& out) -> tl::expected<void, std::string> {
-        if (!attributes.Has(name))
+// The attributes of EXT_mesh_gpu_instancing; those not given are empty.
+class InstanceAttributes {
+  public:
+    InstanceAttributes(const GltfDocument& document, const tinygltf::Value& attributes)
+        : document_(document), attributes_(attributes) {}
+
+    tl::expected<void, std::string> read() {
+        if (auto done = read_one("TRANSLATION", 3, translations_); !done)
+            return done;
+        if (auto done = read_one("ROTATION", 4, rotations_); !done)
+            return done;
+        if (auto done = read_one("SCALE", 3, scales_); !done)
+            return done;
+        if (count_ == unknown)
+            return tl::unexpected(std::string("it has none of TRANSLATION, ROTATION, SCALE"));
+        return {};
+    }
+
+    [[nodiscard]] std::size_t count() const { return count_; }
+
+    [[nodiscard]] Parts parts_of(std::size_t instance) const {
+        Parts parts;
+        if (!translations_.empty())
+            parts.translation = vector_at(translations_, instance);
+        if (!rotations_.empty())
+            parts.rotation = quaternion_at(rotations_, instance);
+        if (!scales_.empty())
+            parts.scale = vector_at(scales_, instance);
+        return parts;
+    }
+
+  private:
+    tl::expected<void, std::string> read_one(const char* name, std::size_t components, Floats& out) {
+        if (!attributes_.Has(name))
             return {};
-        auto values = read_floats(document, attributes.Get(name).GetNumberAsInt(), components);
+        const int accessor = attributes_.Get(name).GetNumberAsInt();
+        auto values = read_floats(document_, accessor, components);
         if (!values)
             return tl::unexpected(values.error());
         out = std::move(*values);
         const std::size_t elements = out.size() / components;
-        if (count != SIZE_MAX && elements != count)
-            return tl::unexpected(fmt::format("{} has {} elements, others have {}", name, elements, count));
-        count = elements;
+        if (count_ != unknown && elements != count_)
+            return tl::unexpected(fmt::format("{} has {} elements, others have {}", name, elements, count_));
+        count_ = elements;
         return {};
-    };
-    if (auto done = read("TRANSLATION", 3, translations); !done)
-        return tl::unexpected(done.error());
-    if (auto done = read("ROTATION", 4, rotations); !done)
-        return tl::unexpected(done.error());
-    if (auto done = read("SCALE", 3, scales); !done)
-        return tl::unexpected(done.error());
-    if (count == SIZE_MAX)
-        return tl::unexpected(std::string("it has none of TRANSLATION, ROTATION, SCALE"));
+    }
+
+    static constexpr std::size_t unknown = SIZE_MAX;
+
+    const GltfDocument& document_;
+    const tinygltf::Value& attributes_;
+    Floats translations_;
+    Floats rotations_;
+    Floats scales_;
+    std::size_t count_ = unknown;
+};
+
+}  // namespace
+
+tl::expected<glm::dmat4, std::string> local_transform(const tinygltf::Node& node) {
+    if (node.matrix.size() == 16)
+        return affine(node.matrix);
+    Parts parts;
+    if (node.translation.size() == 3)
+        parts.translation = vector_at(node.translation, 0);
+    if (node.rotation.size() == 4)
+        parts.rotation = quaternion_at(node.rotation, 0);
+    if (node.scale.size() == 3)
+        parts.scale = vector_at(node.scale, 0);
+    return compose(parts);
+}
+
+tl::expected<std::vector<glm::dmat4>, std::string> instance_transforms(const GltfDocument& document,
+                                                                       const tinygltf::Value& extension) {
+    InstanceAttributes attributes(document, extension.Get("attributes"));
+    if (auto read = attributes.read(); !read)
+        return tl::unexpected(read.error());
     std::vector<glm::dmat4> transforms;
-    for (std::size_t n = 0; n < count; ++n) {
-        const glm::dvec3 t =
-            translations.empty()
-                ? glm::dvec3(0)
-                : glm::dvec3(translations[3 * n], translations[3 * n + 1], translations[3 * n + 2]);
-        const glm::dvec3 s =
-            scales.empty() ? glm::dvec3(1) : glm::dvec3(scales[3 * n], scales[3 * n + 1], scales[3 * n + 2]);
-        const glm::dquat r =
-            rotations.empty()
-                ? glm::dquat(1, 0, 0, 0)
-                : glm::dquat(
-                      rotations[4 * n + 3], rotations[4 * n], rotations[4 * n + 1], rotations[4 * n + 2]);
-        const auto local = compose(t, r, s);
+    for (std::size_t n = 0; n < attributes.count(); ++n) {
+        const auto local = compose(attributes.parts_of(n));
         if (!local)
             return tl::unexpected(fmt::format("instance {}: {}", n, local.error()));
         transforms.push_back(*local);

@@ -1,0 +1,23 @@
+// Digests of a map's content: they cover what can change a bake and nothing else.
+#pragma once
+
+#include "bakerd/map/digest.h"
+#include "bakerd/map/map.h"
+
+namespace drtv::map {
+
+// Each covers its argument and, by their digests, the things of the map that it names. REQUIRES: those
+// digests are final.
+[[nodiscard]] Digest digest_texture(const Texture& texture);
+[[nodiscard]] Digest digest_material(const Material& material, const Map& map);
+[[nodiscard]] Digest digest_primitive(const Primitive& primitive, const Map& map);
+[[nodiscard]] Digest digest_mesh(const Mesh& mesh);
+[[nodiscard]] Digest digest_object(const Object& object, const Map& map);
+[[nodiscard]] Digest digest_volume(const Volume& volume);
+[[nodiscard]] Digest digest_light(const Light& light);
+
+// Brings objects, probes, volumes and lights into an order that depends on content only, and digests it all.
+// REQUIRES: each volume's `probe_name` is empty or a probe's.
+void finish_content(Map& map);
+
+}  // namespace drtv::map

@@ -1,0 +1,17 @@
+// Punctual lights of a glTF document.
+#pragma once
+
+#include "bakerd/map/map.h"
+
+#include <tiny_gltf.h>
+
+#include <string>
+
+#include <tl/expected.hpp>
+
+namespace drtv::map {
+
+// One light but for its place and name. The sentence names the light. REQUIRES: the light exists.
+[[nodiscard]] tl::expected<Light, std::string> import_light(const tinygltf::Model& model, int number);
+
+}  // namespace drtv::map
