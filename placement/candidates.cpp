@@ -1,7 +1,10 @@
 #include "placement/candidates.h"
 
+#include "placement/units.h"
+
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <limits>
 
 namespace drtv::placement {
@@ -9,10 +12,6 @@ namespace {
 
 // Surfaces closer together than this are one (a column through a shared edge meets both triangles).
 constexpr float same_surface_m = 1e-3f;
-
-std::int32_t to_units(double m) {
-    return static_cast<std::int32_t>(std::lround(m * units_per_m));
-}
 
 // SplitMix64's finaliser (Steele, Lea, Flood 2014).
 std::uint64_t mixed(std::uint64_t x) {
@@ -22,33 +21,50 @@ std::uint64_t mixed(std::uint64_t x) {
 }
 
 struct Column {
-    std::int32_t a, b;  // lattice coordinates
-    double x_m, y_m;
+    std::int32_t a;  // lattice coordinates
+    std::int32_t b;
+    double x_m;
+    double y_m;
 };
 
 // Visits the columns of a lattice in a square; a column stands in the middle of its lattice square.
 template <class Visit>
-void visit_columns(std::int32_t lattice_m, glm::dvec2 low, glm::dvec2 high, Visit visit) {
+void visit_columns(std::int32_t lattice_m, const Square& square, Visit visit) {
     const double half_m = lattice_m / 2.0;
     const auto first = [&](double m) {
         return static_cast<std::int32_t>(std::ceil((m - half_m) / lattice_m));
     };
-    for (std::int32_t b = first(low.y); b * lattice_m + half_m < high.y; ++b) {
-        for (std::int32_t a = first(low.x); a * lattice_m + half_m < high.x; ++a)
-            visit(Column{a, b, a * lattice_m + half_m, b * lattice_m + half_m});
+    const auto middle_m = [&](std::int32_t n) { return n * lattice_m + half_m; };
+    for (std::int32_t b = first(square.low.y); middle_m(b) < square.high.y; ++b) {
+        for (std::int32_t a = first(square.low.x); middle_m(a) < square.high.x; ++a)
+            visit(Column{a, b, middle_m(a), middle_m(b)});
     }
 }
 
-Candidate candidate_at(
-    const Column& column, double z_m, Kind kind, std::uint32_t level, std::uint32_t stride) {
-    const auto key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(column.a)) << 32 |
-                     static_cast<std::uint32_t>(column.b);
-    return {{to_units(column.x_m), to_units(column.y_m), to_units(z_m)},
-            kind,
-            lattice_class_of(column.a, column.b, stride),
-            level,
-            mixed(key)};
-}
+// Collects the proposals of one column, from the bottom up.
+class ColumnProposals {
+  public:
+    ColumnProposals(const Column& column, Kind kind, std::uint32_t stride, std::vector<Candidate>& out)
+        : out_(out) {
+        next_.position.x = to_units(column.x_m);
+        next_.position.y = to_units(column.y_m);
+        next_.kind = kind;
+        next_.lattice_class = lattice_class_of(column.a, column.b, stride);
+        const auto a = static_cast<std::uint32_t>(column.a);
+        const auto b = static_cast<std::uint32_t>(column.b);
+        next_.hash = mixed(std::uint64_t{a} << 32 | b);
+    }
+
+    void add(double z_m) {
+        next_.position.z = to_units(z_m);
+        out_.push_back(next_);
+        ++next_.level;
+    }
+
+  private:
+    std::vector<Candidate>& out_;
+    Candidate next_;
+};
 
 // Free height above a surface: up to the next one; none when that one is left through its back, because then
 // the space between is the inside of something.
@@ -68,21 +84,33 @@ void propose_on_ground(const Column& column,
                        std::vector<ColumnHit>& hits,
                        std::vector<Candidate>& out) {
     surroundings.column({column.x_m, column.y_m}, hits);
-    std::uint32_t level = 0;
+    ColumnProposals proposals(column, Kind::ground, stride, out);
     float last_m = -std::numeric_limits<float>::infinity();
     for (std::size_t n = hits.size(); n-- > 0;) {
-        if (!hits[n].up_facing || hits[n].z_m - last_m < same_surface_m)
+        const ColumnHit& hit = hits[n];
+        if (!hit.up_facing || hit.z_m - last_m < same_surface_m)
             continue;
         const float free_m = free_height(hits, n);
-        if (free_m < least_free_height_m)
+        if (free_m < min_free_height_m)
             continue;
-        last_m = hits[n].z_m;
-        out.push_back(candidate_at(column,
-                                   double{hits[n].z_m} + std::min(probe_height_m, free_m / 2),
-                                   Kind::ground,
-                                   level++,
-                                   stride));
+        last_m = hit.z_m;
+        const float above_m = std::min(probe_height_m, free_m / 2);
+        proposals.add(double{hit.z_m} + above_m);
     }
+}
+
+// An interval of height.
+struct Height {
+    float low_m;
+    float high_m;
+
+    auto operator<=>(const Height&) const = default;
+};
+
+bool stands_under(const Column& column, const Box& box) {
+    const bool in_x = column.x_m >= box.low.x && column.x_m <= box.high.x;
+    const bool in_y = column.y_m >= box.low.y && column.y_m <= box.high.y;
+    return in_x && in_y;
 }
 
 // Tops of the combined boxes over a point: intervals of height that overlap are one plant, or one thicket.
@@ -90,56 +118,55 @@ void propose_on_vegetation(const Column& column,
                            std::span<const Box> vegetation,
                            std::uint32_t stride,
                            std::vector<Candidate>& out) {
-    std::vector<std::pair<float, float>> spans;
+    std::vector<Height> boxes;
     for (const Box& box : vegetation) {
-        if (column.x_m >= box.low.x && column.x_m <= box.high.x && column.y_m >= box.low.y &&
-            column.y_m <= box.high.y)
-            spans.emplace_back(box.low.z, box.high.z);
+        if (stands_under(column, box))
+            boxes.push_back({box.low.z, box.high.z});
     }
-    std::sort(spans.begin(), spans.end());
-    std::uint32_t level = 0;
-    for (std::size_t n = 0; n < spans.size();) {
-        float top_m = spans[n].second;
-        for (++n; n < spans.size() && spans[n].first <= top_m; ++n)
-            top_m = std::max(top_m, spans[n].second);
-        out.push_back(
-            candidate_at(column, double{top_m} + probe_height_m, Kind::vegetation, level++, stride));
+    std::sort(boxes.begin(), boxes.end());
+    ColumnProposals proposals(column, Kind::vegetation, stride, out);
+    for (std::size_t n = 0; n < boxes.size();) {
+        float top_m = boxes[n].high_m;
+        for (++n; n < boxes.size() && boxes[n].low_m <= top_m; ++n)
+            top_m = std::max(top_m, boxes[n].high_m);
+        proposals.add(double{top_m} + probe_height_m);
     }
 }
 
 }  // namespace
 
 std::uint32_t lattice_class_of(std::int32_t a, std::int32_t b, std::uint32_t stride) {
-    const std::uint32_t x = static_cast<std::uint32_t>(a) & (stride - 1),
-                        y = static_cast<std::uint32_t>(b) & (stride - 1);
+    const std::uint32_t x = static_cast<std::uint32_t>(a) & (stride - 1);
+    const std::uint32_t y = static_cast<std::uint32_t>(b) & (stride - 1);
     std::uint32_t value = 0;
     for (std::uint32_t bit = 1; bit < stride; bit <<= 1) {
         const std::uint32_t differs = ((x ^ y) & bit) != 0 ? 2 : 0;
-        value = value * 4 + differs + ((y & bit) != 0 ? 1 : 0);
+        const std::uint32_t odd_row = (y & bit) != 0 ? 1 : 0;
+        value = value * 4 + differs + odd_row;
     }
     return value;
 }
 
 std::uint32_t lattice_stride(std::int32_t lattice_m, float min_distance_m) {
     std::uint32_t stride = 1;
-    while (static_cast<float>(stride) * static_cast<float>(lattice_m) < min_distance_m)
+    const auto step_m = static_cast<float>(lattice_m);
+    while (static_cast<float>(stride) * step_m < min_distance_m)
         stride *= 2;
     return stride;
 }
 
-std::vector<Candidate> propose(glm::dvec2 low,
-                               glm::dvec2 high,
+std::vector<Candidate> propose(const Square& square,
                                std::span<const Box> vegetation,
                                const Surroundings& surroundings,
                                const Settings& settings) {
     std::vector<Candidate> candidates;
     std::vector<ColumnHit> hits;
     const std::uint32_t ground_stride = lattice_stride(ground_lattice_m, settings.min_distance_m);
-    visit_columns(ground_lattice_m, low, high, [&](const Column& column) {
+    visit_columns(ground_lattice_m, square, [&](const Column& column) {
         propose_on_ground(column, surroundings, ground_stride, hits, candidates);
     });
     const std::uint32_t vegetation_stride = lattice_stride(vegetation_lattice_m, settings.min_distance_m);
-    visit_columns(vegetation_lattice_m, low, high, [&](const Column& column) {
+    visit_columns(vegetation_lattice_m, square, [&](const Column& column) {
         propose_on_vegetation(column, vegetation, vegetation_stride, candidates);
     });
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {

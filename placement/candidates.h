@@ -8,7 +8,7 @@
 namespace drtv::placement {
 
 inline constexpr float probe_height_m = 1;  // above the surface or the box
-inline constexpr float least_free_height_m = 1.5f;
+inline constexpr float min_free_height_m = 1.5f;
 
 // A proposal with its place in the order of priority.
 struct Candidate {
@@ -30,9 +30,14 @@ struct Candidate {
 // Smallest power of two s for which s lattice steps are at least the distance.
 [[nodiscard]] std::uint32_t lattice_stride(std::int32_t lattice_m, float min_distance_m);
 
-// All proposals in the square [low, high) of world metres, by priority.
-[[nodiscard]] std::vector<Candidate> propose(glm::dvec2 low,
-                                             glm::dvec2 high,
+// [low, high), world metres.
+struct Square {
+    glm::dvec2 low;
+    glm::dvec2 high;
+};
+
+// All proposals in the square, by priority.
+[[nodiscard]] std::vector<Candidate> propose(const Square& square,
                                              std::span<const Box> vegetation,
                                              const Surroundings& surroundings,
                                              const Settings& settings);

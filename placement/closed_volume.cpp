@@ -17,7 +17,36 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
+using Face = std::array<std::size_t, 3>;
 namespace pmp = CGAL::Polygon_mesh_processing;
+
+// Triangles that need not hang together, each vertex named by all faces at its position.
+struct Soup {
+    std::vector<Kernel::Point_3> points;
+    std::vector<Face> faces;
+};
+
+bool is_degenerate(const Face& face) {
+    return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+}
+
+Soup merged(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles) {
+    Soup soup;
+    std::map<std::array<double, 3>, std::size_t> index_of;
+    const auto point_at = [&](std::uint32_t vertex) {
+        const glm::dvec3& p = positions[vertex];
+        const auto [entry, added] = index_of.try_emplace({p.x, p.y, p.z}, soup.points.size());
+        if (added)
+            soup.points.emplace_back(p.x, p.y, p.z);
+        return entry->second;
+    };
+    for (const glm::uvec3& t : triangles) {
+        const Face face = {point_at(t.x), point_at(t.y), point_at(t.z)};
+        if (!is_degenerate(face))
+            soup.faces.push_back(face);
+    }
+    return soup;
+}
 
 }  // namespace
 
@@ -30,21 +59,7 @@ struct ClosedVolume::Mesh {
 tl::expected<ClosedVolume, std::string> ClosedVolume::make(std::string_view name,
                                                            std::span<const glm::dvec3> positions,
                                                            std::span<const glm::uvec3> triangles) {
-    std::map<std::array<double, 3>, std::size_t> index_of;
-    std::vector<Kernel::Point_3> points;
-    const auto merged = [&](std::uint32_t vertex) {
-        const glm::dvec3& p = positions[vertex];
-        const auto [entry, added] = index_of.try_emplace({p.x, p.y, p.z}, points.size());
-        if (added)
-            points.emplace_back(p.x, p.y, p.z);
-        return entry->second;
-    };
-    std::vector<std::array<std::size_t, 3>> faces;
-    for (const glm::uvec3& t : triangles) {
-        const std::array<std::size_t, 3> face = {merged(t.x), merged(t.y), merged(t.z)};
-        if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0])
-            faces.push_back(face);
-    }
+    auto [points, faces] = merged(positions, triangles);
     const auto fail = [&](std::string_view reason) {
         return tl::unexpected(fmt::format("the volume '{}' {}", name, reason));
     };
@@ -65,24 +80,27 @@ tl::expected<ClosedVolume, std::string> ClosedVolume::make(std::string_view name
 }
 
 bool ClosedVolume::contains(const glm::dvec3& point) const {
-    return mesh_->side(Kernel::Point_3(point.x, point.y, point.z)) != CGAL::ON_UNBOUNDED_SIDE;
+    const CGAL::Bounded_side side = mesh_->side(Kernel::Point_3(point.x, point.y, point.z));
+    return side != CGAL::ON_UNBOUNDED_SIDE;
 }
 
 std::vector<glm::dvec3> ClosedVolume::vertices() const {
+    const Surface& surface = mesh_->surface;
     std::vector<glm::dvec3> vertices;
-    for (const auto vertex : mesh_->surface.vertices()) {
-        const Kernel::Point_3& p = mesh_->surface.point(vertex);
+    for (const auto vertex : surface.vertices()) {
+        const Kernel::Point_3& p = surface.point(vertex);
         vertices.emplace_back(p.x(), p.y(), p.z());
     }
     return vertices;
 }
 
 std::vector<glm::uvec3> ClosedVolume::triangles() const {
+    const Surface& surface = mesh_->surface;
     std::vector<glm::uvec3> triangles;
-    for (const auto face : mesh_->surface.faces()) {
+    for (const auto face : surface.faces()) {
         glm::uvec3 triangle{};
         glm::length_t corner = 0;
-        for (const auto vertex : mesh_->surface.vertices_around_face(mesh_->surface.halfedge(face)))
+        for (const auto vertex : surface.vertices_around_face(surface.halfedge(face)))
             triangle[corner++] = static_cast<std::uint32_t>(vertex);
         triangles.push_back(triangle);
     }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <compare>
 #include <utility>
 #include <vector>
 
@@ -25,20 +26,46 @@ using Search = CGAL::Orthogonal_incremental_neighbor_search<Traits>;
 
 constexpr std::int32_t margin_units = 2 * units_per_m;  // below the lowest and above the highest probe
 
+struct Neighbour {
+    double squared_distance;
+    std::size_t probe;
+
+    auto operator<=>(const Neighbour&) const = default;
+};
+
 // The `considered_probes` nearest by (distance, index).
-void nearest_probes(const Search::Tree& tree,
-                    const Position& centre,
-                    std::vector<std::pair<double, std::size_t>>& nearest) {
+void nearest_probes(const Search::Tree& tree, const Position& centre, std::vector<Neighbour>& nearest) {
     nearest.clear();
     const Search search(tree, Kernel::Point_3(centre.x, centre.y, centre.z));
     for (const auto& [point, squared] : search) {
         // The search leaves the order of equal distances open: take all of them before sorting.
-        if (nearest.size() >= considered_probes && squared > nearest.back().first)
+        if (nearest.size() >= considered_probes && squared > nearest.back().squared_distance)
             break;
-        nearest.emplace_back(squared, point.second);
+        nearest.push_back({squared, point.second});
     }
     std::sort(nearest.begin(), nearest.end());
     nearest.resize(std::min(nearest.size(), considered_probes));
+}
+
+// In units, as places are, which count from the grid's corner.
+struct CellSize {
+    std::int32_t width;
+    std::int32_t height;
+
+    [[nodiscard]] Position centre(std::int32_t x, std::int32_t y, std::int32_t z) const {
+        return {x * width + width / 2, y * width + width / 2, z * height + height / 2};
+    }
+};
+
+// Sets the vertical extent.
+void span_probes(std::span<const Position> probes, ProbeGrid& grid) {
+    const auto by_height = [](const Position& a, const Position& b) { return a.z < b.z; };
+    const auto [lowest, highest] = std::minmax_element(probes.begin(), probes.end(), by_height);
+    const std::int32_t bottom = lowest->z - margin_units;
+    const std::int32_t top = highest->z + margin_units;
+    const std::int32_t height = std::max(units_per_m, (top - bottom + 15) / 16);
+    grid.z_origin_units = bottom;
+    grid.cell_height_units = static_cast<std::uint32_t>(height);
 }
 
 }  // namespace
@@ -52,16 +79,11 @@ ProbeGrid build_grid(std::int32_t i,
     grid.cells.fill(no_probe);
     if (probes.empty())
         return grid;
+    span_probes(probes, grid);
 
-    const auto by_height = [](const Position& a, const Position& b) { return a.z < b.z; };
-    const std::int32_t bottom = std::min_element(probes.begin(), probes.end(), by_height)->z - margin_units;
-    const std::int32_t top = std::max_element(probes.begin(), probes.end(), by_height)->z + margin_units;
-    grid.z_origin_units = bottom;
-    grid.cell_height_units = static_cast<std::uint32_t>(std::max(units_per_m, (top - bottom + 15) / 16));
-
-    std::vector<IndexedPoint> points;
     constexpr std::int32_t side = sector_size_m * units_per_m;
-    const Position corner(i * side, j * side, bottom);
+    const Position corner(i * side, j * side, grid.z_origin_units);
+    std::vector<IndexedPoint> points;
     for (std::size_t p = 0; p < probes.size(); ++p) {
         const Position local = probes[p] - corner;
         points.emplace_back(Kernel::Point_3(local.x, local.y, local.z), p);
@@ -69,23 +91,24 @@ ProbeGrid build_grid(std::int32_t i,
     Search::Tree tree(points.begin(), points.end());
     tree.build();
 
-    constexpr std::int32_t width = side / static_cast<std::int32_t>(grid_size);
-    const auto height = static_cast<std::int32_t>(grid.cell_height_units);
-    std::vector<std::pair<double, std::size_t>> nearest;
+    std::vector<Neighbour> nearest;
+    const auto probe_for = [&](const Position& centre) {
+        nearest_probes(tree, centre, nearest);
+        const glm::vec3 eye = metres(corner + centre);
+        for (const Neighbour& near : nearest) {
+            if (surroundings.sees(eye, metres(probes[near.probe])))
+                return near.probe;
+        }
+        return nearest.front().probe;
+    };
+    constexpr auto cells_along = static_cast<std::int32_t>(grid_size);
+    const CellSize size{side / cells_along, static_cast<std::int32_t>(grid.cell_height_units)};
     std::size_t cell = 0;
-    for (std::int32_t z = 0; z < 16; ++z) {
-        for (std::int32_t y = 0; y < 16; ++y) {
-            for (std::int32_t x = 0; x < 16; ++x, ++cell) {
-                const Position centre(x * width + width / 2, y * width + width / 2, z * height + height / 2);
-                nearest_probes(tree, centre, nearest);
-                std::size_t chosen = nearest.front().second;
-                for (const auto& [distance, probe] : nearest) {
-                    if (!surroundings.sees(metres(corner + centre), metres(probes[probe])))
-                        continue;
-                    chosen = probe;
-                    break;
-                }
-                grid.cells[cell] = static_cast<std::uint8_t>(chosen);
+    for (std::int32_t z = 0; z < cells_along; ++z) {
+        for (std::int32_t y = 0; y < cells_along; ++y) {
+            for (std::int32_t x = 0; x < cells_along; ++x) {
+                const std::size_t chosen = probe_for(size.centre(x, y, z));
+                grid.cells[cell++] = static_cast<std::uint8_t>(chosen);
             }
         }
     }

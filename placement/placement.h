@@ -7,6 +7,7 @@
 #pragma once
 
 #include "placement/closed_volume.h"
+#include "placement/solid_test.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -86,12 +87,6 @@ struct Input {
     std::span<const glm::dvec3> manual;       // all manual probes of the map
     std::span<const ClosedVolume> no_probes;  // all such volumes of the map
 };
-
-// A point stands in a solid when more than a quarter of these rays meet a back.
-[[nodiscard]] std::span<const glm::vec3> solid_test_directions();
-[[nodiscard]] bool is_in_solid(std::size_t backs);
-// How many of the rays would have to end otherwise for the answer to change.
-[[nodiscard]] std::size_t backs_to_flip(std::size_t backs);
 
 // How far from the sector's border the surroundings are asked: columns, vegetation, rays' origins.
 [[nodiscard]] float decision_margin_m(const Settings& settings);
