@@ -1,7 +1,8 @@
-#include "client/commands.h"
-#include "client/job_text.h"
+#include "client/command_list.h"
 
-#include <fmt/format.h>
+#include "client/job_text.h"
+#include "client/number_text.h"
+
 #include <grpcpp/grpcpp.h>
 
 #include <cstdio>
@@ -17,6 +18,22 @@ std::string local_time(std::int64_t unix_seconds) {
     if (::localtime_r(&time, &parts) != nullptr)
         std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &parts);
     return text;
+}
+
+void print_heading() {
+    std::printf(
+        "%5s  %-9s  %-19s  %13s  %9s  %s\n", "JOB", "STATE", "CREATED", "SECTORS", "PROBES", "PRESET");
+}
+
+void print_row(const v1::Job& job) {
+    std::printf("%5s  %-9s  %-19s  %6lld/%6lld  %9s  %s\n",
+                job_number(job).c_str(),
+                state_name(job.state()).c_str(),
+                local_time(job.create_time_seconds()).c_str(),
+                static_cast<long long>(job.sectors_done()),
+                static_cast<long long>(job.sectors_total()),
+                with_thousands(job.probes()).c_str(),
+                job.settings().preset().c_str());
 }
 
 int print(Connection& connection, const grpc::Status& status, const v1::Job& job) {
@@ -35,32 +52,21 @@ int print(Connection& connection, const grpc::Status& status, const v1::Job& job
 }  // namespace
 
 int run_list(Connection& connection) {
+    const bool as_json = connection.options.json;
     v1::ListJobsRequest request;
     for (;;) {
         grpc::ClientContext context;
         v1::ListJobsResponse response;
         if (const grpc::Status status = connection.jobs->ListJobs(&context, request, &response); !status.ok())
             return complain(connection.sentence(status));
-        if (!connection.options.json && request.page_token().empty())
-            std::printf("%5s  %-9s  %-19s  %13s  %9s  %s\n",
-                        "JOB",
-                        "STATE",
-                        "CREATED",
-                        "SECTORS",
-                        "PROBES",
-                        "PRESET");
+        const bool is_first_page = request.page_token().empty();
+        if (!as_json && is_first_page)
+            print_heading();
         for (const v1::Job& job : response.jobs()) {
-            if (connection.options.json)
+            if (as_json)
                 std::puts(json_line(job).c_str());
             else
-                std::printf("%5s  %-9s  %-19s  %6lld/%6lld  %9s  %s\n",
-                            job_number(job).c_str(),
-                            state_name(job.state()).c_str(),
-                            local_time(job.create_time_seconds()).c_str(),
-                            static_cast<long long>(job.sectors_done()),
-                            static_cast<long long>(job.sectors_total()),
-                            with_thousands(job.probes()).c_str(),
-                            job.settings().preset().c_str());
+                print_row(job);
         }
         if (response.next_page_token().empty())
             return 0;

@@ -1,6 +1,6 @@
-#include "client/commands.h"
-#include "client/job_text.h"
-#include "client/map_files.h"
+#include "client/command_plan.h"
+
+#include "client/number_text.h"
 #include "client/plan_picture.h"
 
 #include <fmt/format.h>
@@ -15,76 +15,105 @@ namespace drtv::client {
 namespace {
 
 // Reasons that are told, of the first sectors to be baked; --json tells all.
-constexpr std::int64_t most_reasons = 20;
+constexpr std::int64_t max_reasons = 20;
 
-const char* name_of(v1::PlannedSector::Verdict verdict) {
+using Json = nlohmann::ordered_json;
+using Verdict = v1::PlannedSector::Verdict;
+
+const char* name_of(Verdict verdict) {
     if (verdict == v1::PlannedSector::HIT)
         return "hit";
     return verdict == v1::PlannedSector::NEAR_HIT ? "near hit" : "rebake";
 }
 
-std::int64_t count(const v1::Plan& plan, v1::PlannedSector::Verdict verdict) {
-    return std::count_if(plan.sectors().begin(), plan.sectors().end(), [&](const v1::PlannedSector& sector) {
-        return sector.verdict() == verdict;
-    });
+std::int64_t count(const v1::Plan& plan, Verdict verdict) {
+    const auto has_verdict = [&](const v1::PlannedSector& sector) { return sector.verdict() == verdict; };
+    return std::count_if(plan.sectors().begin(), plan.sectors().end(), has_verdict);
 }
 
-void print_json(const v1::Plan& plan, double largest_bound) {
-    using Json = nlohmann::ordered_json;
-    Json sectors = Json::array(), changes = Json::array();
-    for (const v1::PlannedSector& sector : plan.sectors()) {
-        Json json = {{"sector", {sector.i(), sector.j()}}, {"verdict", name_of(sector.verdict())}};
-        if (sector.bound() > 0)
-            json["bound"] = sector.bound();
-        if (!sector.reason().empty())
-            json["reason"] = sector.reason();
-        if (sector.verdict() == v1::PlannedSector::REBAKE)
-            json["share"] = sector.share();
-        sectors.push_back(std::move(json));
-    }
+double largest_bound_of(const v1::Plan& plan) {
+    double largest = 0;
+    for (const v1::PlannedSector& sector : plan.sectors())
+        largest = std::max(largest, sector.bound());
+    return largest;
+}
+
+Json json_of(const v1::PlannedSector& sector) {
+    Json json;
+    json["sector"] = {sector.i(), sector.j()};
+    json["verdict"] = name_of(sector.verdict());
+    if (sector.bound() > 0)
+        json["bound"] = sector.bound();
+    if (!sector.reason().empty())
+        json["reason"] = sector.reason();
+    if (sector.verdict() == v1::PlannedSector::REBAKE)
+        json["share"] = sector.share();
+    return json;
+}
+
+Json json_of(const v1::MapChange& change) {
+    Json json;
+    json["what"] = change.what();
+    json["low"] = {change.x0(), change.y0(), change.z0()};
+    json["high"] = {change.x1(), change.y1(), change.z1()};
+    return json;
+}
+
+void print_json(const v1::Plan& plan) {
+    Json json;
+    json["sectors_total"] = plan.sectors_size();
+    json["hits"] = count(plan, v1::PlannedSector::HIT);
+    json["near_hits"] = count(plan, v1::PlannedSector::NEAR_HIT);
+    json["rebakes"] = count(plan, v1::PlannedSector::REBAKE);
+    json["largest_bound"] = largest_bound_of(plan);
+    json["seconds"] = plan.seconds();
+    json["changes"] = Json::array();
     for (const v1::MapChange& change : plan.changes())
-        changes.push_back({{"what", change.what()},
-                           {"low", {change.x0(), change.y0(), change.z0()}},
-                           {"high", {change.x1(), change.y1(), change.z1()}}});
-    const Json json = {{"sectors_total", plan.sectors_size()},
-                       {"hits", count(plan, v1::PlannedSector::HIT)},
-                       {"near_hits", count(plan, v1::PlannedSector::NEAR_HIT)},
-                       {"rebakes", count(plan, v1::PlannedSector::REBAKE)},
-                       {"largest_bound", largest_bound},
-                       {"seconds", plan.seconds()},
-                       {"changes", std::move(changes)},
-                       {"sectors", std::move(sectors)}};
+        json["changes"].push_back(json_of(change));
+    json["sectors"] = Json::array();
+    for (const v1::PlannedSector& sector : plan.sectors())
+        json["sectors"].push_back(json_of(sector));
     std::puts(json.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
 }
 
-void print_text(const v1::Plan& plan, double largest_bound) {
-    const std::int64_t hits = count(plan, v1::PlannedSector::HIT),
-                       near_hits = count(plan, v1::PlannedSector::NEAR_HIT),
-                       rebakes = count(plan, v1::PlannedSector::REBAKE);
+// How much of a sector to be baked is, when it is not all.
+std::string share_text(double share) {
+    if (share >= 1)
+        return "";
+    if (share > 0)
+        return fmt::format("; {:.0f} % of its probes", std::ceil(share * 100));
+    return "; those that move";
+}
+
+void print_reasons(const v1::Plan& plan) {
+    std::int64_t rebakes = 0;
+    for (const v1::PlannedSector& sector : plan.sectors()) {
+        if (sector.verdict() != v1::PlannedSector::REBAKE)
+            continue;
+        if (++rebakes > max_reasons)
+            continue;
+        const std::string share = share_text(sector.share());
+        std::printf("  (%d, %d) %s%s\n", sector.i(), sector.j(), sector.reason().c_str(), share.c_str());
+    }
+    if (rebakes > max_reasons)
+        std::printf("  and %s more; --json lists all\n", with_thousands(rebakes - max_reasons).c_str());
+}
+
+void print_text(const v1::Plan& plan) {
+    const std::int64_t hits = count(plan, v1::PlannedSector::HIT);
+    const std::int64_t near_hits = count(plan, v1::PlannedSector::NEAR_HIT);
+    const std::int64_t rebakes = count(plan, v1::PlannedSector::REBAKE);
     std::string text = fmt::format("{} sectors: {} hits, {} near hits",
                                    with_thousands(plan.sectors_size()),
                                    with_thousands(hits),
                                    with_thousands(near_hits));
     if (near_hits > 0)
-        text += fmt::format(" (at most {:.2g} % off)", largest_bound * 100);
+        text += fmt::format(" (at most {:.2g} % off)", largest_bound_of(plan) * 100);
     text += fmt::format(", {} to bake", with_thousands(rebakes));
     if (rebakes > 0 && plan.seconds() > 0)
         text += fmt::format(", about {}", duration_text(plan.seconds()));
     std::puts(text.c_str());
-    std::int64_t told = 0;
-    for (const v1::PlannedSector& sector : plan.sectors()) {
-        if (sector.verdict() != v1::PlannedSector::REBAKE)
-            continue;
-        if (++told > most_reasons)
-            break;
-        const std::string share =
-            sector.share() >= 1  ? ""
-            : sector.share() > 0 ? fmt::format("; {:.0f} % of its probes", std::ceil(sector.share() * 100))
-                                 : "; those that move";
-        std::printf("  (%d, %d) %s%s\n", sector.i(), sector.j(), sector.reason().c_str(), share.c_str());
-    }
-    if (rebakes > most_reasons)
-        std::printf("  and %s more; --json lists all\n", with_thousands(rebakes - most_reasons).c_str());
+    print_reasons(plan);
 }
 
 }  // namespace
@@ -100,14 +129,11 @@ int run_plan(Connection& connection, const SubmitOptions& options, const std::st
     if (const grpc::Status status = connection.jobs->PlanJob(&context, request, &plan); !status.ok())
         return complain(connection.sentence(status));
     for (const std::string& warning : plan.warnings())
-        std::fprintf(stderr, "bake: warning: %s\n", warning.c_str());
-    double largest_bound = 0;
-    for (const v1::PlannedSector& sector : plan.sectors())
-        largest_bound = std::max(largest_bound, sector.bound());
+        warn(warning);
     if (connection.options.json)
-        print_json(plan, largest_bound);
+        print_json(plan);
     else
-        print_text(plan, largest_bound);
+        print_text(plan);
     if (picture.empty())
         return 0;
     if (auto written = write_plan_picture(plan, picture); !written)

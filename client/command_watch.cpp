@@ -1,13 +1,14 @@
-#include "client/commands.h"
+#include "client/command_watch.h"
+
+#include "client/interrupt.h"
 #include "client/job_text.h"
+#include "client/number_text.h"
 #include "client/progress.h"
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <thread>
 
@@ -17,52 +18,32 @@ namespace {
 // How long a daemon may be away (restarting) before a watch gives up.
 constexpr std::chrono::seconds reconnect_patience{60};
 
-std::atomic<bool> interrupt_seen{false};
-
-void on_interrupt(int) {
-    interrupt_seen = true;
-}
-
 std::string progress_text(const v1::Job& job) {
     std::string text = fmt::format("{}/{} sectors  {} probes",
                                    with_thousands(job.sectors_done()),
                                    with_thousands(job.sectors_total()),
                                    with_thousands(job.probes()));
-    if (job.rays_per_second() > 0)
-        text += fmt::format(
-            "  {:.2f} Mrays/s  {} left", job.rays_per_second() * 1e-6, duration_text(job.seconds_left()));
+    if (job.rays_per_second() > 0) {
+        const double million_rays = in_millions(job.rays_per_second());
+        const std::string left = duration_text(job.seconds_left());
+        text += fmt::format("  {:.2f} Mrays/s  {} left", million_rays, left);
+    }
     if (job.sectors_failed() > 0)
         text += fmt::format("  {} failed", job.sectors_failed());
     return text;
 }
 
-// Cancels a call as soon as ctrl-C is seen, because reading from a stream waits for the next message.
-class InterruptGuard {
-  public:
-    explicit InterruptGuard(grpc::ClientContext& context)
-        : thread_([this, &context] {
-              while (!ended_) {
-                  if (interrupted())
-                      context.TryCancel();
-                  std::this_thread::sleep_for(std::chrono::milliseconds(50));
-              }
-          }) {}
-    ~InterruptGuard() {
-        ended_ = true;
-        thread_.join();
-    }
-    InterruptGuard(const InterruptGuard&) = delete;
-    InterruptGuard& operator=(const InterruptGuard&) = delete;
-
-  private:
-    std::atomic<bool> ended_{false};
-    std::thread thread_;
-};
+double share_ended(const v1::Job& job) {
+    if (job.sectors_total() == 0)
+        return 1;
+    const std::int64_t ended = job.sectors_done() + job.sectors_failed();
+    return static_cast<double>(ended) / static_cast<double>(job.sectors_total());
+}
 
 grpc::Status follow(Connection& connection,
                     const std::string& name,
                     Progress& progress,
-                    const std::function<void(const v1::Job&)>& progressed,
+                    const OnProgress& progressed,
                     v1::Job& last) {
     v1::WatchJobRequest request;
     request.set_name(name);
@@ -78,30 +59,33 @@ grpc::Status follow(Connection& connection,
             std::puts(json_line(job).c_str());
             std::fflush(stdout);
         } else {
-            progress.show(job.sectors_total() == 0
-                              ? 1
-                              : static_cast<double>(job.sectors_done() + job.sectors_failed()) /
-                                    static_cast<double>(job.sectors_total()),
-                          progress_text(job));
+            progress.show(share_ended(job), progress_text(job));
         }
     }
     return reader->Finish();
 }
 
+// Gives the exit status.
+int tell_end(const Connection& connection, const v1::Job& job) {
+    if (!connection.options.json)
+        std::puts(one_line(job).c_str());
+    for (const std::string& warning : job.warnings())
+        warn(warning);
+    const bool succeeded = job.state() == v1::Job::SUCCEEDED;
+    if (succeeded && job.sectors_total() > 0 && job.probes() == 0) {
+        warn("no probe was placed: no column of the 4 m lattice meets ground with 1.5 m of air above it");
+    }
+    if (job.state() == v1::Job::FAILED)
+        return complain(job.error());
+    return succeeded ? 0 : 1;
+}
+
 }  // namespace
 
-void catch_interrupt() {
-    std::signal(SIGINT, on_interrupt);
-}
-bool interrupted() {
-    return interrupt_seen;
-}
-
-int run_watch(Connection& connection,
-              const std::string& argument,
-              const std::function<void(const v1::Job&)>& progressed) {
+int run_watch(Connection& connection, const std::string& argument, const OnProgress& progressed) {
     catch_interrupt();
-    const std::string name = job_resource(argument), number = name.substr(name.find('/') + 1);
+    const std::string name = job_resource(argument);
+    const std::string number = name.substr(name.find('/') + 1);
     Progress progress;
     v1::Job job;
     auto last_contact = std::chrono::steady_clock::now();
@@ -133,18 +117,7 @@ int run_watch(Connection& connection,
         told = true;
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
     }
-    if (!connection.options.json)
-        std::puts(one_line(job).c_str());
-    for (const std::string& warning : job.warnings())
-        std::fprintf(stderr, "bake: warning: %s\n", warning.c_str());
-    if (job.state() == v1::Job::SUCCEEDED && job.sectors_total() > 0 && job.probes() == 0) {
-        std::fprintf(stderr,
-                     "bake: warning: no probe was placed: no column of the 4 m lattice meets ground with 1.5 "
-                     "m of air above it\n");
-    }
-    if (job.state() == v1::Job::FAILED)
-        return complain(job.error());
-    return job.state() == v1::Job::SUCCEEDED ? 0 : 1;
+    return tell_end(connection, job);
 }
 
 }  // namespace drtv::client

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -13,40 +12,42 @@
 namespace drtv::client {
 namespace {
 
-tl::expected<std::string, std::string> read_text(const std::string& path) {
+using Credentials = std::shared_ptr<grpc::ChannelCredentials>;
+
+tl::expected<void, std::string> read_pem(const std::string& path, std::string& text) {
+    if (path.empty())
+        return tl::unexpected(std::string("TLS needs all three of --tls-ca, --tls-cert and --tls-key"));
     std::ifstream file(path, std::ios::binary);
     if (!file)
         return tl::unexpected(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
-    return std::string(std::istreambuf_iterator<char>(file), {});
+    text.assign(std::istreambuf_iterator<char>(file), {});
+    return {};
 }
 
-tl::expected<std::shared_ptr<grpc::ChannelCredentials>, std::string> credentials(
-    const ConnectionOptions& options) {
-    const std::array<std::string, 3> paths = {options.tls_ca, options.tls_key, options.tls_certificate};
-    if (paths[0].empty() && paths[1].empty() && paths[2].empty())
+tl::expected<Credentials, std::string> credentials(const ConnectionOptions& options) {
+    if (options.tls_ca.empty() && options.tls_key.empty() && options.tls_certificate.empty())
         return grpc::InsecureChannelCredentials();
-    std::array<std::string, 3> texts;
-    for (std::size_t n = 0; n < paths.size(); ++n) {
-        if (paths[n].empty())
-            return tl::unexpected(std::string("TLS needs all three of --tls-ca, --tls-cert and --tls-key"));
-        auto text = read_text(paths[n]);
-        if (!text)
-            return tl::unexpected(text.error());
-        texts[n] = std::move(*text);
-    }
-    return grpc::SslCredentials({texts[0], texts[1], texts[2]});
+    grpc::SslCredentialsOptions tls;
+    if (auto read = read_pem(options.tls_ca, tls.pem_root_certs); !read)
+        return tl::unexpected(read.error());
+    if (auto read = read_pem(options.tls_key, tls.pem_private_key); !read)
+        return tl::unexpected(read.error());
+    if (auto read = read_pem(options.tls_certificate, tls.pem_cert_chain); !read)
+        return tl::unexpected(read.error());
+    return grpc::SslCredentials(tls);
 }
 
 }  // namespace
 
 std::string Connection::sentence(const grpc::Status& status) const {
-    const bool unreached = status.error_code() == grpc::StatusCode::UNAVAILABLE &&
-                           status.error_message().find("stopping") == std::string::npos;
-    if (unreached)
+    const std::string message = status.error_message();
+    const bool is_away = status.error_code() == grpc::StatusCode::UNAVAILABLE;
+    const bool says_it_stops = message.find("stopping") != std::string::npos;
+    if (is_away && !says_it_stops)
         return fmt::format("cannot reach bakerd at {}: is it running?", options.server);
-    return status.error_message().empty()
-               ? fmt::format("bakerd answered with status {}", static_cast<int>(status.error_code()))
-               : status.error_message();
+    if (message.empty())
+        return fmt::format("bakerd answered with status {}", static_cast<int>(status.error_code()));
+    return message;
 }
 
 tl::expected<Connection, std::string> connect(const ConnectionOptions& options) {
@@ -71,6 +72,10 @@ tl::expected<Connection, std::string> connect(const ConnectionOptions& options) 
 int complain(const std::string& sentence) {
     std::fprintf(stderr, "bake: %s\n", sentence.c_str());
     return 1;
+}
+
+void warn(const std::string& sentence) {
+    std::fprintf(stderr, "bake: warning: %s\n", sentence.c_str());
 }
 
 std::string job_resource(const std::string& argument) {

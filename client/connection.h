@@ -16,8 +16,11 @@ namespace drtv::client {
 
 struct ConnectionOptions {
     std::string server = "127.0.0.1:7447";
-    std::string tls_ca, tls_certificate, tls_key;  // PEM files; all or none
-    bool json = false;                             // one object a line on standard output
+    // PEM files; all or none.
+    std::string tls_ca;
+    std::string tls_certificate;
+    std::string tls_key;
+    bool json = false;  // one object a line on standard output
 };
 
 struct Connection {
@@ -36,6 +39,9 @@ struct Connection {
 
 // "bake: <sentence>" to standard error; gives exit status 1.
 int complain(const std::string& sentence);
+
+// "bake: warning: <sentence>" to standard error.
+void warn(const std::string& sentence);
 
 // "12" or "jobs/12" -> "jobs/12".
 [[nodiscard]] std::string job_resource(const std::string& argument);

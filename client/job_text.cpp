@@ -1,75 +1,75 @@
 #include "client/job_text.h"
 
+#include "client/number_text.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace drtv::client {
+namespace {
 
-std::string job_number(const v1::Job& job) {
-    return job.name().substr(job.name().find('/') + 1);
+using Json = nlohmann::ordered_json;
+
+// What stands behind the collection in a resource's name: "12" of "jobs/12".
+std::string last_part(const std::string& resource) {
+    return resource.substr(resource.find('/') + 1);
 }
 
-std::string state_name(v1::Job::State state) {
+}  // namespace
+
+std::string job_number(const Job& job) {
+    return last_part(job.name());
+}
+
+std::string state_name(Job::State state) {
     switch (state) {
-        case v1::Job::RUNNING:
+        case Job::RUNNING:
             return "running";
-        case v1::Job::SUCCEEDED:
+        case Job::SUCCEEDED:
             return "succeeded";
-        case v1::Job::FAILED:
+        case Job::FAILED:
             return "failed";
-        case v1::Job::CANCELLED:
+        case Job::CANCELLED:
             return "cancelled";
         default:
             return "unknown";
     }
 }
 
-bool has_ended(const v1::Job& job) {
-    return job.state() == v1::Job::SUCCEEDED || job.state() == v1::Job::FAILED ||
-           job.state() == v1::Job::CANCELLED;
+bool has_ended(const Job& job) {
+    return job.state() == Job::SUCCEEDED || job.state() == Job::FAILED || job.state() == Job::CANCELLED;
 }
 
-std::string json_line(const v1::Job& job) {
-    nlohmann::ordered_json json = {{"job", job_number(job)},
-                                   {"state", state_name(job.state())},
-                                   {"map", job.map().substr(job.map().find('/') + 1)},
-                                   {"preset", job.settings().preset()},
-                                   {"sectors_total", job.sectors_total()},
-                                   {"sectors_done", job.sectors_done()},
-                                   {"sectors_failed", job.sectors_failed()},
-                                   {"sectors_cached", job.sectors_cached()},
-                                   {"sectors_near", job.sectors_near()},
-                                   {"largest_bound", job.largest_bound()},
-                                   {"probes", job.probes()},
-                                   {"rays", job.rays()},
-                                   {"rays_per_second", job.rays_per_second()},
-                                   {"seconds_left", job.seconds_left()},
-                                   {"created", job.create_time_seconds()},
-                                   {"ended", job.end_time_seconds()}};
+std::string json_line(const Job& job) {
+    Json json;
+    json["job"] = job_number(job);
+    json["state"] = state_name(job.state());
+    json["map"] = last_part(job.map());
+    json["preset"] = job.settings().preset();
+    json["sectors_total"] = job.sectors_total();
+    json["sectors_done"] = job.sectors_done();
+    json["sectors_failed"] = job.sectors_failed();
+    json["sectors_cached"] = job.sectors_cached();
+    json["sectors_near"] = job.sectors_near();
+    json["largest_bound"] = job.largest_bound();
+    json["probes"] = job.probes();
+    json["rays"] = job.rays();
+    json["rays_per_second"] = job.rays_per_second();
+    json["seconds_left"] = job.seconds_left();
+    json["created"] = job.create_time_seconds();
+    json["ended"] = job.end_time_seconds();
     for (const auto& [key, value] : job.settings().overrides())
         json["set"][key] = value;
-    if (job.has_region())
-        json["region"] = {job.region().x0(), job.region().y0(), job.region().x1(), job.region().y1()};
+    if (job.has_region()) {
+        const auto& region = job.region();
+        json["region"] = {region.x0(), region.y0(), region.x1(), region.y1()};
+    }
     if (!job.error().empty())
         json["error"] = job.error();
-    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string with_thousands(std::int64_t number) {
-    std::string text = std::to_string(number);
-    for (std::size_t at = text.size(); at > 3; at -= 3)
-        text.insert(at - 3, ",");
-    return text;
-}
-
-std::string duration_text(double seconds) {
-    const auto whole = static_cast<std::int64_t>(seconds + 0.5);
-    if (whole >= 3600)
-        return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-    return fmt::format("{}:{:02}", whole / 60, whole % 60);
-}
-
-std::string reused_text(const v1::Job& job) {
+std::string reused_text(const Job& job) {
     std::string text;
     if (job.sectors_cached() > 0)
         text += fmt::format(", {} of them from the cache", with_thousands(job.sectors_cached()));
@@ -80,7 +80,7 @@ std::string reused_text(const v1::Job& job) {
     return text;
 }
 
-std::string one_line(const v1::Job& job) {
+std::string one_line(const Job& job) {
     std::string text = fmt::format("job {} {}: {} of {} sectors done",
                                    job_number(job),
                                    state_name(job.state()),
@@ -90,9 +90,10 @@ std::string one_line(const v1::Job& job) {
     if (job.sectors_failed() > 0)
         text += fmt::format(", {} failed", with_thousands(job.sectors_failed()));
     text += fmt::format(", {} probes", with_thousands(job.probes()));
-    if (job.end_time_seconds() > 0)
-        text += fmt::format(
-            ", {}", duration_text(static_cast<double>(job.end_time_seconds() - job.create_time_seconds())));
+    if (job.end_time_seconds() > 0) {
+        const std::int64_t seconds = job.end_time_seconds() - job.create_time_seconds();
+        text += fmt::format(", {}", duration_text(static_cast<double>(seconds)));
+    }
     return text;
 }
 

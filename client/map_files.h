@@ -25,11 +25,4 @@ struct LocalMap {
 // left out: the server's importer knows whether it matters, and says so.
 [[nodiscard]] tl::expected<LocalMap, std::string> collect_map(const std::vector<std::string>& arguments);
 
-// SHA-256 of a file that may be written to again: the digest is of what was read.
-[[nodiscard]] tl::expected<std::string, std::string> sha256_of_file(const std::string& path);
-[[nodiscard]] std::string sha256_of_text(const std::string& bytes);
-
-// Writes a file: it appears whole or not at all.
-[[nodiscard]] tl::expected<void, std::string> write_whole(const std::string& path, const std::string& bytes);
-
 }  // namespace drtv::client

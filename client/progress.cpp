@@ -13,7 +13,13 @@ namespace {
 
 std::size_t terminal_width() {
     winsize size{};
-    return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+    const bool is_known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return is_known ? size.ws_col : 80;
+}
+
+// Not below 0.
+std::size_t less(std::size_t width, std::size_t taken) {
+    return width > taken ? width - taken : 0;
 }
 
 }  // namespace
@@ -29,13 +35,15 @@ void Progress::show(double share, const std::string& text) {
     if (!on_terminal_)
         return;
     // The text counts more than the bar: on a narrow terminal the bar shrinks.
-    constexpr std::size_t widest_bar = 24, frame = 4;
-    const std::size_t width = terminal_width(),
-                      beside = width > text.size() + frame ? width - text.size() - frame : 0;
-    const std::size_t bar = std::min(widest_bar, beside);
-    const auto full = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(bar) + 0.5);
-    std::string done(full, '#'), left(bar - full, '.');
-    const std::string shown = text.substr(0, width > bar + frame ? width - bar - frame : 0);
+    constexpr std::size_t max_bar = 24;
+    constexpr std::size_t frame = 4;
+    const std::size_t width = terminal_width();
+    const std::size_t bar = std::min(max_bar, less(width, text.size() + frame));
+    const std::string shown = text.substr(0, less(width, bar + frame));
+    const double bounded_share = std::clamp(share, 0.0, 1.0);
+    const auto full = static_cast<std::size_t>(bounded_share * static_cast<double>(bar) + 0.5);
+    std::string done(full, '#');
+    const std::string left(bar - full, '.');
     if (colours_)
         done = "\x1b[32m" + done + "\x1b[0m";
     std::fprintf(stderr, "\r\x1b[K[%s%s] %s", done.c_str(), left.c_str(), shown.c_str());

@@ -19,7 +19,8 @@ class Progress {
     void clear();
 
   private:
-    const bool on_terminal_, colours_;
+    const bool on_terminal_;
+    const bool colours_;
     bool drawn_ = false;
 };
 

@@ -1,16 +1,19 @@
-#include "client/commands.h"
-#include "client/job_text.h"
-#include "client/map_files.h"
+#include "client/upload.h"
+
+#include "client/interrupt.h"
+#include "client/number_text.h"
 #include "client/progress.h"
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <fstream>
 #include <thread>
+#include <vector>
 
 namespace drtv::client {
 namespace {
@@ -21,20 +24,21 @@ constexpr int upload_attempts = 20;
 constexpr std::chrono::milliseconds upload_pause{500};
 
 struct Transfer {
-    std::int64_t sent = 0, total = 0;
+    std::int64_t sent = 0;
+    std::int64_t total = 0;
     Progress progress;
 
     void show() {
-        progress.show(total == 0 ? 1 : static_cast<double>(sent) / static_cast<double>(total),
-                      fmt::format("uploading {:.1f} of {:.1f} MB",
-                                  static_cast<double>(sent) * 1e-6,
-                                  static_cast<double>(total) * 1e-6));
+        const double share = total == 0 ? 1 : static_cast<double>(sent) / static_cast<double>(total);
+        const double sent_mb = in_megabytes(sent);
+        const double total_mb = in_megabytes(total);
+        progress.show(share, fmt::format("uploading {:.1f} of {:.1f} MB", sent_mb, total_mb));
     }
 };
 
-bool passing(const grpc::Status& status) {
-    return status.error_code() == grpc::StatusCode::ABORTED ||
-           status.error_code() == grpc::StatusCode::UNAVAILABLE;
+bool is_passing(const grpc::Status& status) {
+    const grpc::StatusCode code = status.error_code();
+    return code == grpc::StatusCode::ABORTED || code == grpc::StatusCode::UNAVAILABLE;
 }
 
 grpc::Status find_missing(Connection& connection,
@@ -67,9 +71,9 @@ grpc::Status send_blob(Connection& connection,
     request.mutable_blob()->set_size_bytes(file.size_bytes);
     request.set_offset(offset);
     std::string buffer(chunk_bytes, '\0');
+    const auto buffer_size = static_cast<std::streamsize>(buffer.size());
     bool first = true;
-    while (input.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || input.gcount() > 0 ||
-           first) {
+    while (input.read(buffer.data(), buffer_size) || input.gcount() > 0 || first) {
         request.set_data(buffer.data(), static_cast<std::size_t>(input.gcount()));
         if (!writer->Write(request))
             break;  // Finish says why
@@ -94,7 +98,7 @@ tl::expected<void, std::string> upload_file(Connection& connection,
         v1::FindMissingBlobsResponse missing;
         status = find_missing(connection, {&file}, missing);
         // A daemon that restarts is away for a moment.
-        if (passing(status))
+        if (is_passing(status))
             continue;
         if (!status.ok())
             break;
@@ -102,18 +106,45 @@ tl::expected<void, std::string> upload_file(Connection& connection,
             transfer.sent = sent_before + file.size_bytes;
             return {};
         }
-        const std::int64_t offset =
-            missing.missing(0).received_bytes() <= file.size_bytes ? missing.missing(0).received_bytes() : 0;
+        const std::int64_t received_bytes = missing.missing(0).received_bytes();
+        const std::int64_t offset = received_bytes <= file.size_bytes ? received_bytes : 0;
         transfer.sent = sent_before + offset;
         status = send_blob(connection, file, offset, transfer);
         if (status.ok())
             return {};
-        if (!passing(status))
+        if (!is_passing(status))
             break;
     }
     if (interrupted())
         return tl::unexpected(std::string("interrupted; what was uploaded stays with the server"));
     return tl::unexpected(fmt::format("cannot upload {}: {}", file.disk_path, connection.sentence(status)));
+}
+
+tl::expected<void, std::string> upload_missing(Connection& connection,
+                                               const LocalMap& map,
+                                               const v1::FindMissingBlobsResponse& missing) {
+    Transfer transfer;
+    for (const auto& wanted : missing.missing())
+        transfer.total += wanted.blob().size_bytes();
+    for (const auto& wanted : missing.missing()) {
+        const auto file = std::ranges::find(map.files, wanted.blob().sha256(), &LocalFile::sha256);
+        if (auto uploaded = upload_file(connection, *file, transfer); !uploaded)
+            return uploaded;
+    }
+    return {};
+}
+
+v1::CreateMapRequest creation_of(const LocalMap& map) {
+    v1::CreateMapRequest request;
+    for (const LocalFile& file : map.files) {
+        v1::MapFile* added = request.mutable_map()->add_files();
+        added->set_path(file.map_path);
+        added->set_sha256(file.sha256);
+        added->set_size_bytes(file.size_bytes);
+    }
+    for (const std::string& root : map.roots)
+        request.mutable_map()->add_roots(root);
+    return request;
 }
 
 }  // namespace
@@ -125,30 +156,11 @@ tl::expected<v1::Map, std::string> upload_map(Connection& connection, const Loca
     v1::FindMissingBlobsResponse missing;
     if (const grpc::Status status = find_missing(connection, all, missing); !status.ok())
         return tl::unexpected(connection.sentence(status));
-    {
-        Transfer transfer;
-        for (const auto& m : missing.missing())
-            transfer.total += m.blob().size_bytes();
-        for (const auto& m : missing.missing()) {
-            const auto file = std::find_if(map.files.begin(), map.files.end(), [&](const LocalFile& f) {
-                return f.sha256 == m.blob().sha256();
-            });
-            if (auto uploaded = upload_file(connection, *file, transfer); !uploaded)
-                return tl::unexpected(uploaded.error());
-        }
-    }
-    v1::CreateMapRequest request;
-    for (const LocalFile& file : map.files) {
-        v1::MapFile* f = request.mutable_map()->add_files();
-        f->set_path(file.map_path);
-        f->set_sha256(file.sha256);
-        f->set_size_bytes(file.size_bytes);
-    }
-    for (const std::string& root : map.roots)
-        request.mutable_map()->add_roots(root);
+    if (auto uploaded = upload_missing(connection, map, missing); !uploaded)
+        return tl::unexpected(uploaded.error());
     grpc::ClientContext context;
     v1::Map created;
-    const grpc::Status status = connection.maps->CreateMap(&context, request, &created);
+    const grpc::Status status = connection.maps->CreateMap(&context, creation_of(map), &created);
     if (!status.ok())
         return tl::unexpected(connection.sentence(status));
     return created;

@@ -1,0 +1,13 @@
+// bake pull: a job's finished sector files, in a folder.
+#pragma once
+
+#include "client/connection.h"
+
+#include <string>
+
+namespace drtv::client {
+
+// Makes the folder when it is missing. Gives the exit status.
+int run_pull(Connection& connection, const std::string& job, const std::string& folder);
+
+}  // namespace drtv::client

@@ -1,0 +1,13 @@
+// bake submit: a map becomes a job.
+#pragma once
+
+#include "client/connection.h"
+#include "client/job_request.h"
+
+namespace drtv::client {
+
+// Submits, and when the options say so, watches the job to its end and pulls its files while they are made.
+// Gives the exit status.
+int run_submit(Connection& connection, const SubmitOptions& options);
+
+}  // namespace drtv::client

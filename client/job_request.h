@@ -1,0 +1,28 @@
+// The job that the options of `bake submit` and `bake plan` ask for.
+#pragma once
+
+#include "client/connection.h"
+
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+namespace drtv::client {
+
+struct SubmitOptions {
+    std::vector<std::string> maps;  // glTF files, or folders of them
+    std::string region;             // "X0,Y0,X1,Y1", or empty
+    std::string preset = "console";
+    std::vector<std::string> settings;  // "key=value"
+    bool exact = false;                 // tolerance=0
+    bool wait = false;
+    std::string pull_folder;  // empty: pull nothing
+};
+
+// Checks the options, makes the folder to pull to, uploads the map, tells its warnings, and gives the job.
+// From the upload on, ctrl-C is caught (interrupt.h).
+[[nodiscard]] tl::expected<v1::Job, std::string> prepare_job(Connection& connection,
+                                                             const SubmitOptions& options);
+
+}  // namespace drtv::client

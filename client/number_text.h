@@ -1,0 +1,24 @@
+// Numbers as people read them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace drtv::client {
+
+// "12,345". REQUIRES: the number is not negative.
+[[nodiscard]] std::string with_thousands(std::int64_t number);
+
+// "1:05", "2:00:00". REQUIRES: the duration is not negative.
+[[nodiscard]] std::string duration_text(double seconds);
+
+// In millions, as sizes and rates are told.
+[[nodiscard]] constexpr double in_millions(double number) {
+    return number * 1e-6;
+}
+
+[[nodiscard]] constexpr double in_megabytes(std::int64_t size_bytes) {
+    return in_millions(static_cast<double>(size_bytes));
+}
+
+}  // namespace drtv::client

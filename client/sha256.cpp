@@ -1,0 +1,62 @@
+#include "client/sha256.h"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <vector>
+
+namespace drtv::client {
+namespace {
+
+class Sha256 {
+  public:
+    Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+        EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
+    }
+
+    void add(const char* data, std::size_t size) { EVP_DigestUpdate(context_.get(), data, size); }
+
+    [[nodiscard]] std::string hex() {
+        std::array<unsigned char, 32> digest{};
+        EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr);
+        std::string text;
+        for (unsigned char byte : digest)
+            text += fmt::format("{:02x}", byte);
+        return text;
+    }
+
+  private:
+    std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+}  // namespace
+
+tl::expected<std::string, std::string> sha256_of_file(const std::string& path) {
+    const auto fail = [&] {
+        return tl::unexpected(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+    };
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return fail();
+    Sha256 hash;
+    std::vector<char> buffer(1 << 20);
+    const auto buffer_size = static_cast<std::streamsize>(buffer.size());
+    while (file.read(buffer.data(), buffer_size) || file.gcount() > 0)
+        hash.add(buffer.data(), static_cast<std::size_t>(file.gcount()));
+    if (file.bad())
+        return fail();
+    return hash.hex();
+}
+
+std::string sha256_of_text(const std::string& bytes) {
+    Sha256 hash;
+    hash.add(bytes.data(), bytes.size());
+    return hash.hex();
+}
+
+}  // namespace drtv::client
