@@ -12,7 +12,8 @@ glm::dvec2 cos_sin(double radians) {
                      quarters * 0x1.3198a2e037073p-69;
     // Taylor series, from the smallest term on; |x| is an eighth of a turn at most.
     const double square = x * x;
-    double c = 0, s = 0;
+    double c = 0;
+    double s = 0;
     for (int n = 20; n > 0; n -= 2) {
         c = (1 + c) * -square / (n * (n - 1));
         s = (1 + s) * -square / (n * (n + 1));

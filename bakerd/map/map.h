@@ -46,19 +46,23 @@ enum class Coverage : std::uint8_t {
 // A picture at half the size or less: 16-bit linear RGBA. Colour is multiplied by coverage, coverage stands
 // in w.
 struct MipLevel {
-    std::uint32_t width = 0, height = 0;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
     std::vector<std::uint16_t> rgba;
 };
 
 // Least and largest alpha of a block of texels.
 struct AlphaRange {
-    std::uint8_t low = 255, high = 255;
+    std::uint8_t low = 255;
+    std::uint8_t high = 255;
 };
 
 // A decoded picture with the sampler's wrapping: RGBA, 8 bits, colour still sRGB-encoded, alpha linear.
 struct Texture {
-    std::uint32_t width = 0, height = 0;
-    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
     Coverage coverage = Coverage::whole;
     float cutoff = 0;                      // of alpha; Coverage::cutoff only
     std::vector<std::uint8_t> rgba;        // rows from v = 0
@@ -72,7 +76,8 @@ inline constexpr std::uint32_t no_texture = UINT32_MAX;
 // A texture as a material wears it: its uv = (row 0, row 1) . (u, v, 1), from KHR_texture_transform.
 struct TextureView {
     std::uint32_t texture = no_texture;
-    glm::vec3 u_from_uv{1, 0, 0}, v_from_uv{0, 1, 0};
+    glm::vec3 u_from_uv{1, 0, 0};
+    glm::vec3 v_from_uv{0, 1, 0};
 
     [[nodiscard]] bool present() const { return texture != no_texture; }
 };
@@ -91,8 +96,8 @@ enum class AlphaMode : std::uint8_t {
 struct Material {
     glm::vec4 base_colour{1};  // linear; w is alpha
     TextureView base_texture;
-    glm::vec3 emission{
-        0};  // radiance of the front (of both sides where double_sided), nits: factor x strength
+    // Radiance of the front (of both sides where double_sided), nits: factor x strength.
+    glm::vec3 emission{0};
     TextureView emission_texture;
     // KHR_materials_diffuse_transmission: the share of light that goes through instead of back, and its
     // colour.
@@ -160,8 +165,10 @@ struct Light {
     glm::vec3 colour{1};
     float intensity = 1;
     float range_m = 0;
-    float inner_cone_radians = 0, outer_cone_radians = 0;
-    glm::vec3 position{}, direction{};  // world; direction in which a spot or directional light shines
+    float inner_cone_radians = 0;
+    float outer_cone_radians = 0;
+    glm::vec3 position{};   // world
+    glm::vec3 direction{};  // world; in which a spot or directional light shines
     Digest digest;
     std::string name;
 };
