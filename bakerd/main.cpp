@@ -1,8 +1,8 @@
 // bakerd: parse, wire, run.
 #include "bakerd/farm/farm.h"
-#include "bakerd/farm/worker.h"
 #include "bakerd/service/server.h"
 #include "bakerd/trace/device.h"
+#include "bakerd/worker/worker.h"
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
     app.allow_config_extras(CLI::config_extras_mode::error);
     serve_command->configurable()->fallthrough();
 
-    drtv::farm::WorkerOptions worker_options;
+    drtv::worker::Options worker_options;
     CLI::App* worker_command =
         app.add_subcommand("worker", "Answer requests on standard input (started by the daemon)");
     worker_command->add_option("--blobs", worker_options.blob_folder, "Folder of the blob store")->required();
@@ -138,6 +138,6 @@ int main(int argc, char** argv) {
         return 2;
     }
     if (*worker_command)
-        return drtv::farm::run_worker(worker_options);
+        return drtv::worker::run_worker(worker_options);
     return serve(serve_options);
 }

@@ -56,8 +56,8 @@ std::string json_line(const Job& job) {
     json["rays"] = job.rays();
     json["rays_per_second"] = job.rays_per_second();
     json["seconds_left"] = job.seconds_left();
-    json["created"] = job.create_time_seconds();
-    json["ended"] = job.end_time_seconds();
+    json["created"] = job.create_time().seconds();
+    json["ended"] = job.end_time().seconds();
     for (const auto& [key, value] : job.settings().overrides())
         json["set"][key] = value;
     if (job.has_region()) {
@@ -90,8 +90,8 @@ std::string one_line(const Job& job) {
     if (job.sectors_failed() > 0)
         text += fmt::format(", {} failed", with_thousands(job.sectors_failed()));
     text += fmt::format(", {} probes", with_thousands(job.probes()));
-    if (job.end_time_seconds() > 0) {
-        const std::int64_t seconds = job.end_time_seconds() - job.create_time_seconds();
+    if (job.has_end_time()) {
+        const std::int64_t seconds = job.end_time().seconds() - job.create_time().seconds();
         text += fmt::format(", {}", duration_text(static_cast<double>(seconds)));
     }
     return text;

@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   build-essential ca-certificates ccache cmake git ninja-build pkg-config python3
   libcgal-dev libcli11-dev libembree-dev libexpected-dev libfmt-dev libglm-dev libgrpc++-dev libprotobuf-dev
-  libspdlog-dev libsqlite3-dev libssl-dev libstb-dev libtbb-dev libtinygltf-dev libzstd-dev nlohmann-json3-dev
+  libspdlog-dev libsqlite3-dev libsqlitecpp-dev libssl-dev libstb-dev libtbb-dev libtinygltf-dev libzstd-dev nlohmann-json3-dev
   protobuf-compiler protobuf-compiler-grpc
 )
 if [[ "${1:-}" == "--tests" ]]; then

@@ -19,8 +19,18 @@ class Recent {
     // one tries again.
     template <class Make>
     [[nodiscard]] std::shared_ptr<const Value> get(const Key& key, Make make) {
+        return get_if(key, make, [](const Value&) { return true; });
+    }
+
+    // A value that is not worth keeping is given to those who wait for it, and made again for the next.
+    template <class Make, class WorthKeeping>
+    [[nodiscard]] std::shared_ptr<const Value> get_if(const Key& key, Make make, WorthKeeping worth_keeping) {
         const std::shared_ptr<Slot> slot = slot_of(key);
         std::call_once(slot->made, [&] { slot->value = std::make_shared<const Value>(make()); });
+        if (!worth_keeping(*slot->value)) {
+            const std::lock_guard lock(mutex_);
+            slots_.remove(slot);
+        }
         return slot->value;
     }
 

@@ -12,44 +12,35 @@
 
 namespace drtv::farm {
 
-Result<std::unique_ptr<DataFolder>> DataFolder::lock(const std::string& path) {
+store::Result<std::unique_ptr<DataFolder>> DataFolder::lock(const std::string& path) {
     std::error_code code;
     std::filesystem::create_directories(path, code);
     if (code)
-        return fail(ErrorCode::internal,
-                    fmt::format("cannot make the data folder {}: {}", path, code.message()));
+        return store::fail(store::ErrorCode::internal,
+                           fmt::format("cannot make the data folder {}: {}", path, code.message()));
+    const auto cannot = [&](store::ErrorCode kind, const char* what) {
+        return store::fail(kind,
+                           fmt::format("cannot {} the data folder {}: {}", what, path, std::strerror(errno)));
+    };
     const std::string lock_path = path + "/lock";
-    const int fd = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (fd < 0)
-        return fail(ErrorCode::internal,
-                    fmt::format("cannot write to the data folder {}: {}", path, std::strerror(errno)));
-    if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
-        if (errno != EWOULDBLOCK) {
-            const int error = errno;
-            ::close(fd);
-            return fail(ErrorCode::internal,
-                        fmt::format("cannot lock the data folder {}: {}", path, std::strerror(error)));
-        }
+    store::FileDescriptor file(::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
+    if (!file.is_open())
+        return cannot(store::ErrorCode::internal, "write to");
+    if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
+        if (errno != EWOULDBLOCK)
+            return cannot(store::ErrorCode::internal, "lock");
         std::array<char, 32> owner{};
-        const ssize_t read = ::read(fd, owner.data(), owner.size() - 1);
-        ::close(fd);
-        return fail(ErrorCode::failed_precondition,
-                    fmt::format("the data folder {} is in use by another bakerd{}",
-                                path,
-                                read > 0 ? fmt::format(" (process {})", owner.data()) : ""));
+        const ssize_t read = ::read(file.get(), owner.data(), owner.size() - 1);
+        return store::fail(store::ErrorCode::failed_precondition,
+                           fmt::format("the data folder {} is in use by another bakerd{}",
+                                       path,
+                                       read > 0 ? fmt::format(" (process {})", owner.data()) : ""));
     }
     const std::string pid = std::to_string(::getpid());
-    if (::ftruncate(fd, 0) != 0 || ::write(fd, pid.data(), pid.size()) != static_cast<ssize_t>(pid.size())) {
-        const int error = errno;
-        ::close(fd);
-        return fail(ErrorCode::resource_exhausted,
-                    fmt::format("cannot write to the data folder {}: {}", path, std::strerror(error)));
-    }
-    return std::unique_ptr<DataFolder>(new DataFolder(path, fd));
-}
-
-DataFolder::~DataFolder() {
-    ::close(fd_);
+    const auto size = static_cast<ssize_t>(pid.size());
+    if (::ftruncate(file.get(), 0) != 0 || ::write(file.get(), pid.data(), pid.size()) != size)
+        return cannot(store::ErrorCode::resource_exhausted, "write to");
+    return std::unique_ptr<DataFolder>(new DataFolder(path, std::move(file)));
 }
 
 }  // namespace drtv::farm

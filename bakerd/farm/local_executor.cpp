@@ -6,6 +6,11 @@
 #include <algorithm>
 
 namespace drtv::farm {
+namespace {
+
+const worker::Failure stopping{"the server is stopping", true};
+
+}  // namespace
 
 LocalExecutor::LocalExecutor(Options options, Callbacks callbacks)
     : options_(std::move(options)),
@@ -31,8 +36,8 @@ void LocalExecutor::stop(std::chrono::milliseconds patience) {
     worker_.reset();
     // Nobody waits for an answer that cannot come.
     const auto refuse = [](Request& request) {
-        if (request.promise)
-            request.promise->set_value(FailureAnswer{"the server is stopping", true});
+        if (request.answer)
+            request.answer(stopping);
     };
     for (auto& [id, request] : in_flight_)
         refuse(request);
@@ -52,21 +57,30 @@ void LocalExecutor::wake() {
     changed_.notify_all();
 }
 
-std::future<Outcome> LocalExecutor::ask(WorkerRequest what) {
+template <class Answer>
+std::future<Reply<Answer>> LocalExecutor::ask(Question question) {
+    const auto promise = std::make_shared<std::promise<Reply<Answer>>>();
     Request request;
-    request.what = std::move(what);
-    request.promise = std::make_shared<std::promise<Outcome>>();
-    std::future<Outcome> future = request.promise->get_future();
+    request.what = std::move(question);
+    request.answer = [promise](Outcome outcome) { promise->set_value(reply_of<Answer>(std::move(outcome))); };
     {
         const std::lock_guard lock(mutex_);
         if (draining_ || stopping_)
-            request.promise->set_value(FailureAnswer{"the server is stopping", true});
+            request.answer(stopping);
         else
             questions_.push_back(std::move(request));
         woken_ = true;
     }
     changed_.notify_all();
-    return future;
+    return promise->get_future();
+}
+
+std::future<Reply<worker::MapSummary>> LocalExecutor::inspect(worker::InspectRequest request) {
+    return ask<worker::MapSummary>(std::move(request));
+}
+
+std::future<Reply<worker::Assessments>> LocalExecutor::assess(worker::AssessRequest request) {
+    return ask<worker::Assessments>(std::move(request));
 }
 
 void LocalExecutor::run() {
@@ -103,20 +117,20 @@ void LocalExecutor::run() {
 void LocalExecutor::handle(const Event& event) {
     if (event.worker != worker_number_)
         return;  // the last words of one that has been replaced
-    if (const auto* answer = std::get_if<WorkerAnswer>(&event.what))
+    if (const auto* answer = std::get_if<worker::Answer>(&event.what))
         handle_answer(*answer);
     else
         handle_death(std::get<std::string>(event.what));
 }
 
-void LocalExecutor::handle_answer(const WorkerAnswer& answer) {
+void LocalExecutor::handle_answer(const worker::Answer& answer) {
     last_news_ = std::chrono::steady_clock::now();
     const auto found = in_flight_.find(answer.id);
     if (found == in_flight_.end())
         return;
     Request request = std::move(found->second);
     in_flight_.erase(found);
-    const auto* failure = std::get_if<FailureAnswer>(&answer.what);
+    const auto* failure = std::get_if<worker::Failure>(&answer.what);
     if (failure != nullptr && failure->may_retry)
         retry_or_fail(std::move(request), failure->sentence);
     else
@@ -136,21 +150,22 @@ void LocalExecutor::handle_death(const std::string& how) {
 
 void LocalExecutor::retry_or_fail(Request request, const std::string& sentence) {
     if (++request.failed_attempts < max_attempts) {
-        // Should an earlier result be what the worker cannot bear: without it then.
-        if (auto* bake = std::get_if<BakeRequest>(&request.what))
+        // Without the earlier result: it may be what the worker cannot bear.
+        if (auto* bake = std::get_if<worker::BakeRequest>(&request.what))
             bake->earlier.reset();
         again_.push_back(std::move(request));
         return;
     }
     finish(request,
-           FailureAnswer{fmt::format("{} (tried {} times)", sentence, request.failed_attempts), false});
+           worker::Failure{fmt::format("{} (tried {} times)", sentence, request.failed_attempts), false});
 }
 
 void LocalExecutor::finish(Request& request, Outcome outcome) {
-    if (request.promise)
-        request.promise->set_value(std::move(outcome));
+    if (request.answer)
+        request.answer(std::move(outcome));
     else
-        callbacks_.finished(request.caller_id, request.failed_attempts, std::move(outcome));
+        callbacks_.finished(
+            *request.sector, request.failed_attempts, reply_of<worker::SectorResult>(std::move(outcome)));
 }
 
 std::optional<LocalExecutor::Request> LocalExecutor::next_request() {
@@ -172,12 +187,12 @@ std::optional<LocalExecutor::Request> LocalExecutor::next_request() {
         again_.pop_front();
         return request;
     }
-    std::optional<BakeRequest> task = callbacks_.next();
+    std::optional<SectorTask> task = callbacks_.next();
     if (!task)
         return std::nullopt;
     Request request;
-    request.caller_id = task->id;
-    request.what = *task;
+    request.sector = task->id;
+    request.what = std::move(task->request);
     return request;
 }
 
@@ -204,7 +219,7 @@ bool LocalExecutor::ensure_worker() {
         changed_.notify_all();
     };
     auto worker = WorkerProcess::start(options_.worker_command,
-                                       {[post](WorkerAnswer answer) { post(std::move(answer)); },
+                                       {[post](worker::Answer answer) { post(std::move(answer)); },
                                         [post](std::string how) { post(std::move(how)); }});
     if (!worker) {
         spdlog::error("{}", worker.error().message);
@@ -225,10 +240,9 @@ void LocalExecutor::send(Request request) {
     if (in_flight_.empty())
         last_news_ = std::chrono::steady_clock::now();
     const std::uint64_t id = next_id_++;
-    std::visit([id](auto& r) { r.id = id; }, request.what);
     const auto [entry, added] = in_flight_.emplace(id, std::move(request));
     // A failed write means the worker has died; its death is on its way and finds the request in flight.
-    static_cast<void>(worker_->send(entry->second.what));
+    static_cast<void>(worker_->send({id, entry->second.what}));
 }
 
 }  // namespace drtv::farm

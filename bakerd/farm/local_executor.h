@@ -2,9 +2,9 @@
 // those requests are tried again one by one, so that the guilty one is found and fails alone.
 #pragma once
 
-#include "bakerd/farm/error.h"
+#include "bakerd/farm/reply.h"
 #include "bakerd/farm/worker_process.h"
-#include "bakerd/farm/worker_protocol.h"
+#include "bakerd/worker/requests.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -18,11 +18,18 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <variant>
 #include <vector>
+
+#include <tl/expected.hpp>
 
 namespace drtv::farm {
 
-using Outcome = decltype(WorkerAnswer::what);
+// A sector to bake; `id` is the caller's.
+struct SectorTask {
+    std::uint64_t id = 0;
+    worker::BakeRequest request;
+};
 
 // A request is tried this often; two retries after the first failure.
 inline constexpr int max_attempts = 3;
@@ -32,14 +39,15 @@ class LocalExecutor {
     struct Options {
         std::vector<std::string> worker_command;
         int threads = 1;  // sectors in flight: a few more than threads, so that none waits
-        // A worker that answers nothing for so long while it has work hangs, and is ended. The dearest sector
-        // that settings allow takes minutes.
+        // A worker that has work and stays silent for this long is considered hung and is killed. The most
+        // expensive sector that settings allow takes minutes.
         std::chrono::milliseconds stall_limit = std::chrono::minutes(30);
     };
     // Called from the executor's own thread, never under its lock.
     struct Callbacks {
-        std::function<std::optional<BakeRequest>()> next;  // the next sector to bake; `id` is the caller's
-        std::function<void(std::uint64_t id, int failed_attempts, Outcome outcome)> finished;
+        std::function<std::optional<SectorTask>()> next;
+        std::function<void(std::uint64_t id, int failed_attempts, Reply<worker::SectorResult> reply)>
+            finished;
     };
 
     LocalExecutor(Options options, Callbacks callbacks);
@@ -52,29 +60,34 @@ class LocalExecutor {
     // There may be something new behind `next`.
     void wake();
 
-    // Has the worker answer this before any waiting sector.
-    [[nodiscard]] std::future<Outcome> ask(WorkerRequest request);
+    // The worker answers these before any waiting sector.
+    [[nodiscard]] std::future<Reply<worker::MapSummary>> inspect(worker::InspectRequest request);
+    [[nodiscard]] std::future<Reply<worker::Assessments>> assess(worker::AssessRequest request);
 
     // Takes no more work, waits at most `patience` until what is in flight has finished, then ends the
     // worker. What was not finished is not reported; open and later questions are answered with a refusal.
     void stop(std::chrono::milliseconds patience);
 
   private:
+    using Question = decltype(worker::Request::what);
+    using Outcome = decltype(worker::Answer::what);
     struct Request {
-        WorkerRequest what;
-        std::uint64_t caller_id = 0;                     // of a sector
-        std::shared_ptr<std::promise<Outcome>> promise;  // of a question
+        Question what;
+        std::optional<std::uint64_t> sector;  // the caller's id; none of a question
+        std::function<void(Outcome)> answer;  // of a question
         int failed_attempts = 0;
         bool alone = false;  // was in flight when a worker died
     };
     struct Event {
-        std::uint64_t worker = 0;                      // which of the workers started so far
-        std::variant<WorkerAnswer, std::string> what;  // or how the worker died
+        std::uint64_t worker = 0;                        // which of the workers started so far
+        std::variant<worker::Answer, std::string> what;  // or how the worker died
     };
 
+    template <class Answer>
+    [[nodiscard]] std::future<Reply<Answer>> ask(Question question);
     void run();
     void handle(const Event& event);
-    void handle_answer(const WorkerAnswer& answer);
+    void handle_answer(const worker::Answer& answer);
     void handle_death(const std::string& how);
     void retry_or_fail(Request request, const std::string& sentence);
     void finish(Request& request, Outcome outcome);
@@ -94,7 +107,7 @@ class LocalExecutor {
     bool woken_ = false;             // guarded by mutex_
     bool draining_ = false;          // guarded by mutex_
     bool stopping_ = false;          // guarded by mutex_
-    bool idle_ = false;  // guarded by mutex_; the thread waits and nothing is in flight, for drain()
+    bool idle_ = false;              // guarded by mutex_; the thread waits and nothing is in flight
 
     // Used by the executor's thread only.
     std::unique_ptr<WorkerProcess> worker_;

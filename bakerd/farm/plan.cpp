@@ -1,7 +1,5 @@
 #include "bakerd/farm/plan.h"
 
-#include "bakerd/reuse/footprint.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,10 +9,6 @@
 namespace drtv::farm {
 namespace {
 
-// Of one sector: branches of a map, and steps back.
-constexpr std::size_t most_candidates = 8;
-
-constexpr std::size_t most_warnings = 20;
 constexpr const char* lost = "its earlier result is lost";
 
 // Sectors are baked in rings around changes; within one in the order in which they share scenes.
@@ -22,17 +16,28 @@ constexpr float ring_m = 192;
 
 float distance_m(const map::SectorCoordinate& sector, const map::Bounds& bounds) {
     const auto side = static_cast<float>(map::sector_size_m);
-    const float x = (static_cast<float>(sector.i) + 0.5f) * side,
-                y = (static_cast<float>(sector.j) + 0.5f) * side;
+    const float x = (static_cast<float>(sector.i) + 0.5f) * side;
+    const float y = (static_cast<float>(sector.j) + 0.5f) * side;
     return std::hypot(x - std::clamp(x, bounds.low.x, bounds.high.x),
                       y - std::clamp(y, bounds.low.y, bounds.high.y));
 }
 
-void reuse(PlannedSector& planned, const BakeAnswer& result, float bound) {
+void reuse_result(PlannedSector& planned, ResultRow result, float bound) {
     planned.verdict = bound > 0 ? reuse::Verdict::near_hit : reuse::Verdict::hit;
-    planned.reused = result;
+    planned.reused = std::move(result);
     planned.bound = bound;
     planned.candidates.clear();
+}
+
+void warn(Plan& plan, std::string sentence) {
+    if (plan.warnings.size() < worker::max_warnings)
+        plan.warnings.push_back(std::move(sentence));
+}
+
+const char* reason_of(const CacheEntry& entry) {
+    if (!entry.candidates.empty())
+        return "its earlier results were not looked at";
+    return entry.lost ? lost : "it was not baked with these settings before";
 }
 
 }  // namespace
@@ -41,132 +46,102 @@ std::int64_t Plan::count(reuse::Verdict verdict) const {
     return std::ranges::count(sectors, verdict, &PlannedSector::verdict);
 }
 
-Digest task_key(const Digest& content, const bake::Settings& settings, map::SectorCoordinate sector) {
-    map::Hasher hasher;
-    hasher.add_sized(std::string_view("drtv task"));
-    hasher.add(content);
-    hasher.add(reuse::results_key(settings));
-    hasher.add(sector.i);
-    hasher.add(sector.j);
-    if (settings.tolerance > 0)
-        hasher.add(settings.tolerance);
-    return hasher.finish();
-}
-
-Result<Plan> look_up(Database& database,
-                     const BlobStore& blobs,
-                     const InspectAnswer& map,
-                     const bake::Settings& settings,
-                     const std::vector<map::SectorCoordinate>& sectors) {
-    bake::Settings exact = settings;
-    exact.tolerance = 0;
-    const Digest results_key = reuse::results_key(settings);
-    const auto mean_seconds = database.mean_seconds(results_key);
+store::Result<Plan> look_up(ResultCache& cache,
+                            std::span<const map::SectorCoordinate> sectors,
+                            const CacheQuery& query,
+                            ResultCache::Pin& pin) {
+    const auto mean_seconds = cache.mean_seconds(query.results_key);
     if (!mean_seconds)
         return tl::unexpected(mean_seconds.error());
+    auto entries = cache.find(sectors, query, pin);
+    if (!entries)
+        return tl::unexpected(entries.error());
     Plan plan;
-    for (const map::SectorCoordinate& sector : sectors) {
+    for (std::size_t n = 0; n < sectors.size(); ++n) {
+        CacheEntry& entry = (*entries)[n];
         PlannedSector& planned = plan.sectors.emplace_back();
-        planned.sector = sector;
+        planned.sector = sectors[n];
         planned.seconds = *mean_seconds;
-        for (const bake::Settings& asked : {exact, settings}) {
-            const auto task = database.task_by_key(task_key(map.content, asked, sector));
-            if (!task)
-                return tl::unexpected(task.error());
-            if (!*task || (*task)->state != TaskState::done || !blobs.has((*task)->result.result))
-                continue;
-            reuse(planned, (*task)->result, (*task)->bound);
-            break;
-        }
-        if (planned.reused)
+        if (!entry.warning.empty())
+            warn(plan, entry.warning);
+        if (entry.held) {
+            reuse_result(planned, std::move(*entry.held), entry.bound);
             continue;
-        auto rows = database.results(sector, results_key, most_candidates);
-        if (!rows)
-            return tl::unexpected(rows.error());
-        for (ResultRow& row : *rows) {
-            if (!blobs.has(row.result.result))
-                continue;
-            if (row.result.inventory == map.inventory && row.result.bound <= settings.tolerance) {
-                reuse(planned, row.result, row.result.bound);
-                break;
-            }
-            if (planned.candidates.empty())
-                planned.seconds = row.result.seconds;
-            planned.candidates.push_back(std::move(row));
         }
-        if (planned.reused)
-            continue;
-        planned.reason = rows->empty()                ? "it was not baked with these settings before"
-                         : planned.candidates.empty() ? lost
-                                                      : "its earlier results were not looked at";
+        planned.reason = reason_of(entry);
+        planned.candidates = std::move(entry.candidates);
+        if (!planned.candidates.empty())
+            planned.seconds = planned.candidates.front().result.seconds;
     }
     return plan;
 }
 
-std::optional<AssessRequest> question_of(const Plan& plan,
-                                         const Digest& manifest,
-                                         const bake::Settings& settings) {
-    AssessRequest request{0, manifest, settings, {}};
+std::optional<worker::AssessRequest> make_assess_request(const Plan& plan,
+                                                         const Digest& manifest,
+                                                         const bake::Settings& settings) {
+    worker::AssessRequest request{manifest, settings, {}};
     for (const PlannedSector& planned : plan.sectors) {
         if (planned.candidates.empty())
             continue;
-        AssessRequest::Sector& asked = request.sectors.emplace_back();
+        worker::AssessRequest::Sector& asked = request.sectors.emplace_back();
         asked.sector = planned.sector;
         for (const ResultRow& row : planned.candidates)
-            asked.candidates.push_back(digests_of(row.result));
+            asked.candidates.push_back(row.result.blobs);
     }
     if (request.sectors.empty())
         return std::nullopt;
     return request;
 }
 
-void apply(const AssessAnswer& answer, Plan& plan) {
+void merge_answer(const worker::Assessments& answer, Plan& plan) {
     std::size_t next = 0;
     for (PlannedSector& planned : plan.sectors) {
         if (planned.candidates.empty() || next >= answer.sectors.size())
             continue;
-        const AssessAnswer::Sector& assessed = answer.sectors[next++];
+        const worker::Assessments::Sector& assessed = answer.sectors[next++];
         planned.reason = assessed.reason;
         if (assessed.candidate >= planned.candidates.size())
             continue;
-        const BakeAnswer& candidate = planned.candidates[assessed.candidate].result;
+        const ResultRow candidate = planned.candidates[assessed.candidate];
         if (assessed.verdict != reuse::Verdict::rebake) {
-            reuse(planned, BakeAnswer(candidate), assessed.bound);
+            reuse_result(planned, candidate, assessed.bound);
         } else if (assessed.share < 1) {
             planned.earlier = candidate;
             planned.share = assessed.share;
             // Where probes are placed again some may come to stand elsewhere.
-            planned.seconds = candidate.seconds * std::max(static_cast<double>(assessed.share), 0.02);
+            const double share = std::max(static_cast<double>(assessed.share), 0.02);
+            planned.seconds = candidate.result.seconds * share;
         }
     }
     plan.changes = answer.changes;
-    plan.warnings = answer.warnings;
+    for (const std::string& warning : answer.warnings)
+        warn(plan, warning);
     if (plan.changes.empty())
         return;
     std::ranges::stable_sort(plan.sectors, {}, [&](const PlannedSector& planned) {
         float nearest = std::numeric_limits<float>::max();
-        for (const AssessAnswer::Change& change : plan.changes)
+        for (const worker::Assessments::Change& change : plan.changes)
             nearest = std::min(nearest, distance_m(planned.sector, change.bounds));
         return std::floor(nearest / ring_m);
     });
 }
 
-void drop_damaged(BlobStore& blobs, Plan& plan) {
+void drop_damaged(store::BlobStore& blobs, Plan& plan) {
     for (PlannedSector& planned : plan.sectors) {
         if (!planned.reused)
             continue;
-        const auto bytes = blobs.get(planned.reused->result);
+        const auto bytes = blobs.get(planned.reused->result.blobs.file);
         if (bytes)
             continue;
         planned.verdict = reuse::Verdict::rebake;
         planned.reused.reset();
         planned.bound = 0;
         planned.reason = lost;
-        if (plan.warnings.size() < most_warnings)
-            plan.warnings.push_back(fmt::format("sector ({}, {}): an earlier result cannot be used: {}",
-                                                planned.sector.i,
-                                                planned.sector.j,
-                                                bytes.error().message));
+        warn(plan,
+             fmt::format("sector ({}, {}): an earlier result cannot be used: {}",
+                         planned.sector.i,
+                         planned.sector.j,
+                         bytes.error().message));
     }
 }
 

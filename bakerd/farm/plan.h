@@ -1,12 +1,16 @@
-// What of a job is there already: which sectors' results hold, and which have to be baked, and why.
+// Decides for each sector of a job whether a stored result can be reused, and why not.
 #pragma once
 
-#include "bakerd/farm/blob_store.h"
-#include "bakerd/farm/database.h"
-#include "bakerd/farm/error.h"
-#include "bakerd/farm/worker_protocol.h"
+#include "bakerd/farm/records.h"
+#include "bakerd/farm/result_cache.h"
+#include "bakerd/reuse/verdict.h"
+#include "bakerd/store/blob_store.h"
+#include "bakerd/store/error.h"
+#include "bakerd/worker/requests.h"
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,10 +19,10 @@ namespace drtv::farm {
 struct PlannedSector {
     map::SectorCoordinate sector;
     reuse::Verdict verdict = reuse::Verdict::rebake;
-    std::optional<BakeAnswer> reused;   // unless rebake
+    std::optional<ResultRow> reused;    // unless rebake
     float bound = 0;                    // of a near hit
     std::string reason;                 // one sentence; empty of a hit
-    std::optional<BakeAnswer> earlier;  // of another map, of which a rebake takes over what holds
+    std::optional<ResultRow> earlier;   // of another map, of which a rebake reuses what holds
     float share = 1;                    // of its probes, that a rebake has to bake
     double seconds = 0;                 // that baking it will take, as far as is known; 0: not
     std::vector<ResultRow> candidates;  // to be assessed, the one used last first
@@ -26,34 +30,28 @@ struct PlannedSector {
 
 struct Plan {
     std::vector<PlannedSector> sectors;  // in the order of baking
-    std::vector<AssessAnswer::Change> changes;
+    std::vector<worker::Assessments::Change> changes;
     std::vector<std::string> warnings;
 
     [[nodiscard]] std::int64_t count(reuse::Verdict verdict) const;
 };
 
-// What a sector's file depends on, as far as is known before it is baked.
-[[nodiscard]] Digest task_key(const Digest& content,
-                              const bake::Settings& settings,
-                              map::SectorCoordinate sector);
-
-// What the database knows for certain; the rest has candidates, or none.
-[[nodiscard]] Result<Plan> look_up(Database& database,
-                                   const BlobStore& blobs,
-                                   const InspectAnswer& map,
-                                   const bake::Settings& settings,
-                                   const std::vector<map::SectorCoordinate>& sectors);
+// What the cache knows for certain; the rest has candidates, or none.
+[[nodiscard]] store::Result<Plan> look_up(ResultCache& cache,
+                                          std::span<const map::SectorCoordinate> sectors,
+                                          const CacheQuery& query,
+                                          ResultCache::Pin& pin);
 
 // The question about the candidates; nothing when there are none.
-[[nodiscard]] std::optional<AssessRequest> question_of(const Plan& plan,
-                                                       const Digest& manifest,
-                                                       const bake::Settings& settings);
+[[nodiscard]] std::optional<worker::AssessRequest> make_assess_request(const Plan& plan,
+                                                                       const Digest& manifest,
+                                                                       const bake::Settings& settings);
 
-// Takes in the answer to question_of(plan), and puts sectors near changes first.
-void apply(const AssessAnswer& answer, Plan& plan);
+// Takes in the answer to make_assess_request(plan), and puts sectors near changes first.
+void merge_answer(const worker::Assessments& answer, Plan& plan);
 
-// Reads the files of what is reused. One that is not as it was written is removed and told: its sector is
+// Reads the files of what is reused. One that is not as it was written is removed and reported: its sector is
 // baked.
-void drop_damaged(BlobStore& blobs, Plan& plan);
+void drop_damaged(store::BlobStore& blobs, Plan& plan);
 
 }  // namespace drtv::farm

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <optional>
 
 extern char** environ;
 
@@ -22,22 +23,31 @@ std::string describe_exit(int status) {
     return fmt::format("ended with status {}", WEXITSTATUS(status));
 }
 
+struct Pipe {
+    store::FileDescriptor read;
+    store::FileDescriptor write;
+};
+
+std::optional<Pipe> make_pipe() {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+        return std::nullopt;
+    return Pipe{store::FileDescriptor(ends[0]), store::FileDescriptor(ends[1])};
+}
+
 }  // namespace
 
-Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::vector<std::string>& command,
-                                                            Events events) {
-    std::array<int, 2> to_worker{}, from_worker{};
-    if (::pipe2(to_worker.data(), O_CLOEXEC) != 0)
-        return fail(ErrorCode::internal, fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-    if (::pipe2(from_worker.data(), O_CLOEXEC) != 0) {
-        ::close(to_worker[0]);
-        ::close(to_worker[1]);
-        return fail(ErrorCode::internal, fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-    }
+store::Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::vector<std::string>& command,
+                                                                   Events events) {
+    std::optional<Pipe> to_worker = make_pipe();
+    std::optional<Pipe> from_worker = to_worker ? make_pipe() : std::nullopt;
+    if (!from_worker)
+        return store::fail(store::ErrorCode::internal,
+                           fmt::format("cannot make a pipe: {}", std::strerror(errno)));
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, to_worker[0], STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, from_worker[1], STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, to_worker->read.get(), STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, from_worker->write.get(), STDOUT_FILENO);
     // A group of its own: ctrl-C in the daemon's terminal is the daemon's to handle.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
@@ -55,37 +65,35 @@ Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::vector<st
     const int error = ::posix_spawn(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
-    ::close(to_worker[0]);
-    ::close(from_worker[1]);
-    if (error != 0) {
-        ::close(to_worker[1]);
-        ::close(from_worker[0]);
-        return fail(ErrorCode::internal,
-                    fmt::format("cannot start the worker {}: {}", command[0], std::strerror(error)));
-    }
+    if (error != 0)
+        return store::fail(store::ErrorCode::internal,
+                           fmt::format("cannot start the worker {}: {}", command[0], std::strerror(error)));
     return std::unique_ptr<WorkerProcess>(
-        new WorkerProcess(pid, to_worker[1], from_worker[0], std::move(events)));
+        new WorkerProcess(pid, std::move(to_worker->write), std::move(from_worker->read), std::move(events)));
 }
 
-WorkerProcess::WorkerProcess(pid_t pid, int input, int output, Events events)
-    : pid_(pid), input_(input), output_(output), events_(std::move(events)), reader_([this] {
-          read_answers();
-      }) {}
+WorkerProcess::WorkerProcess(pid_t pid,
+                             store::FileDescriptor input,
+                             store::FileDescriptor output,
+                             Events events)
+    : pid_(pid),
+      input_(std::move(input)),
+      output_(std::move(output)),
+      events_(std::move(events)),
+      reader_([this] { read_answers(); }) {}
 
 WorkerProcess::~WorkerProcess() {
     ::kill(pid_, SIGKILL);
     reader_.join();
-    ::close(input_);
-    ::close(output_);
     // Reaped here and not by the reader, so that the number cannot go to another process before the kill
     // above.
     ::waitpid(pid_, nullptr, 0);
 }
 
-bool WorkerProcess::send(const WorkerRequest& request) {
-    const std::string text = encode(request) + "\n";
+bool WorkerProcess::send(const worker::Request& request) {
+    const std::string text = worker::encode(request) + "\n";
     for (std::size_t at = 0; at < text.size();) {
-        const ssize_t n = ::write(input_, text.data() + at, text.size() - at);
+        const ssize_t n = ::write(input_.get(), text.data() + at, text.size() - at);
         if (n < 0 && errno == EINTR)
             continue;
         if (n <= 0)
@@ -99,7 +107,7 @@ void WorkerProcess::read_answers() {
     std::string held;
     std::array<char, 65536> buffer;
     for (;;) {
-        const ssize_t n = ::read(output_, buffer.data(), buffer.size());
+        const ssize_t n = ::read(output_.get(), buffer.data(), buffer.size());
         if (n < 0 && errno == EINTR)
             continue;
         if (n <= 0)
@@ -107,7 +115,7 @@ void WorkerProcess::read_answers() {
         held.append(buffer.data(), static_cast<std::size_t>(n));
         for (std::size_t end; (end = held.find('\n')) != std::string::npos; held.erase(0, end + 1)) {
             // A line that is no answer is a broken worker: it will be ended, and its death reported.
-            if (auto answer = decode_answer(std::string_view(held).substr(0, end)))
+            if (auto answer = worker::decode_answer(std::string_view(held).substr(0, end)))
                 events_.answered(std::move(*answer));
             else
                 ::kill(pid_, SIGKILL);

@@ -1,8 +1,9 @@
 // A worker seen from the daemon: started on demand, its answers and its death reported to a callback.
 #pragma once
 
-#include "bakerd/farm/error.h"
-#include "bakerd/farm/worker_protocol.h"
+#include "bakerd/store/error.h"
+#include "bakerd/store/file_descriptor.h"
+#include "bakerd/worker/protocol.h"
 
 #include <sys/types.h>
 
@@ -17,15 +18,15 @@ namespace drtv::farm {
 class WorkerProcess {
   public:
     struct Events {
-        std::function<void(WorkerAnswer)> answered;
+        std::function<void(worker::Answer)> answered;
         std::function<void(std::string)> died;  // how, as half a sentence: "was killed by signal 9 (Killed)"
     };
 
     // REQUIRES: the process ignores SIGPIPE, because a worker may die while it is written to.
     // Starts `command` (program and arguments). The events come from a thread of its own; `died` comes last,
     // once.
-    [[nodiscard]] static Result<std::unique_ptr<WorkerProcess>> start(const std::vector<std::string>& command,
-                                                                      Events events);
+    [[nodiscard]] static store::Result<std::unique_ptr<WorkerProcess>> start(
+        const std::vector<std::string>& command, Events events);
 
     // Ends the worker at once and waits for it.
     ~WorkerProcess();
@@ -33,17 +34,17 @@ class WorkerProcess {
     WorkerProcess& operator=(const WorkerProcess&) = delete;
 
     // False when the worker's input is closed: its death will be reported.
-    [[nodiscard]] bool send(const WorkerRequest& request);
+    [[nodiscard]] bool send(const worker::Request& request);
 
     [[nodiscard]] pid_t pid() const { return pid_; }
 
   private:
-    WorkerProcess(pid_t pid, int input, int output, Events events);
+    WorkerProcess(pid_t pid, store::FileDescriptor input, store::FileDescriptor output, Events events);
     void read_answers();
 
     const pid_t pid_;
-    int input_;   // we write
-    int output_;  // we read
+    const store::FileDescriptor input_;   // we write
+    const store::FileDescriptor output_;  // we read
     const Events events_;
     std::thread reader_;
 };

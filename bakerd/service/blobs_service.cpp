@@ -9,10 +9,10 @@ namespace {
 constexpr int max_blobs_a_request = 100000;
 constexpr std::int64_t max_blob_bytes = (std::int64_t{1} << 31) - 1;
 
-farm::Result<map::Digest> checked(const v1::Blob& blob) {
+store::Result<map::Digest> checked(const v1::Blob& blob) {
     if (blob.size_bytes() < 0 || blob.size_bytes() > max_blob_bytes) {
-        return farm::fail(farm::ErrorCode::invalid_argument,
-                          fmt::format("a blob of {} bytes is over the limit of 2 GiB", blob.size_bytes()));
+        return store::fail(store::ErrorCode::invalid_argument,
+                           fmt::format("a blob of {} bytes is over the limit of 2 GiB", blob.size_bytes()));
     }
     return digest_from_text(blob.sha256());
 }

@@ -4,7 +4,7 @@
 namespace drtv::service {
 namespace {
 
-grpc::Status answer(const farm::Result<farm::CacheView>& view, v1::CacheState* response) {
+grpc::Status answer(const store::Result<farm::CacheView>& view, v1::CacheState* response) {
     if (!view)
         return to_status(view.error());
     response->set_results(view->counts.results);

@@ -26,8 +26,15 @@ v1::Job::State to_proto(farm::JobState state) {
             return v1::Job::FAILED;
         case farm::JobState::cancelled:
             return v1::Job::CANCELLED;
+        case farm::JobState::creating:
+            break;
     }
     return v1::Job::STATE_UNSPECIFIED;
+}
+
+void set_time(std::int64_t unix_ms, google::protobuf::Timestamp& out) {
+    out.set_seconds(unix_ms / 1000);
+    out.set_nanos(static_cast<std::int32_t>(unix_ms % 1000) * 1'000'000);
 }
 
 void fill(const farm::JobView& view, v1::Job& out) {
@@ -35,9 +42,9 @@ void fill(const farm::JobView& view, v1::Job& out) {
     out.set_name(job_name(row.id));
     out.set_map(map_name(row.manifest));
     out.mutable_settings()->set_preset(row.preset);
-    for (const auto& [key, value] : farm::decode_overrides(row.overrides))
+    for (const auto& [key, value] : row.overrides)
         (*out.mutable_settings()->mutable_overrides())[key] = value;
-    if (const auto region = farm::decode_region(row.region)) {
+    if (const auto& region = row.region) {
         out.mutable_region()->set_x0(region->x0);
         out.mutable_region()->set_y0(region->y0);
         out.mutable_region()->set_x1(region->x1);
@@ -45,18 +52,19 @@ void fill(const farm::JobView& view, v1::Job& out) {
     }
     out.set_state(to_proto(row.state));
     out.set_error(row.error);
-    out.set_sectors_total(view.counts.total);
-    out.set_sectors_done(view.counts.done);
-    out.set_sectors_failed(view.counts.failed);
+    out.set_sectors_total(row.sectors_total);
+    out.set_sectors_done(row.sectors_done);
+    out.set_sectors_failed(row.sectors_failed);
     out.set_sectors_cached(row.sectors_cached);
     out.set_sectors_near(row.sectors_near);
     out.set_largest_bound(static_cast<double>(row.largest_bound));
-    out.set_probes(view.counts.probes);
+    out.set_probes(row.probes);
     out.set_rays(view.rays);
     out.set_rays_per_second(view.rays_per_second);
     out.set_seconds_left(view.seconds_left);
-    out.set_create_time_seconds(row.created_seconds);
-    out.set_end_time_seconds(row.ended_seconds);
+    set_time(row.created_ms, *out.mutable_create_time());
+    if (row.ended_ms != 0)
+        set_time(row.ended_ms, *out.mutable_end_time());
     for (const std::string& warning : view.warnings)
         out.add_warnings(warning);
 }
@@ -73,7 +81,7 @@ v1::PlannedSector::Verdict to_proto(reuse::Verdict verdict) {
     return v1::PlannedSector::VERDICT_UNSPECIFIED;
 }
 
-farm::Result<farm::JobRequest> wanted_job(const v1::Job& job) {
+store::Result<farm::JobRequest> wanted_job(const v1::Job& job) {
     const auto map = map_from_name(job.map());
     if (!map)
         return tl::unexpected(map.error());
@@ -87,7 +95,7 @@ farm::Result<farm::JobRequest> wanted_job(const v1::Job& job) {
     return wanted;
 }
 
-grpc::Status answer(const farm::Result<farm::JobView>& view, v1::Job* response) {
+grpc::Status answer(const store::Result<farm::JobView>& view, v1::Job* response) {
     if (!view)
         return to_status(view.error());
     fill(*view, *response);

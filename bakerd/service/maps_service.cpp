@@ -10,7 +10,7 @@ constexpr int max_files = 10000, max_roots = 1000;
 
 void fill(const farm::MapView& view, v1::Map& out) {
     out.set_name(map_name(view.id));
-    for (const farm::ManifestFile& file : view.manifest.files) {
+    for (const store::ManifestFile& file : view.manifest.files) {
         v1::MapFile* f = out.add_files();
         f->set_path(file.path);
         f->set_sha256(to_hex(file.digest));
@@ -40,7 +40,7 @@ grpc::Status MapsService::CreateMap(grpc::ServerContext*,
                             max_files,
                             max_roots)};
     }
-    farm::Manifest manifest;
+    store::Manifest manifest;
     for (const v1::MapFile& file : map.files()) {
         const auto digest = digest_from_text(file.sha256());
         if (!digest)

@@ -16,8 +16,8 @@ std::string shortened(const std::string& text) {
 
 }  // namespace
 
-grpc::Status to_status(const farm::Error& error) {
-    using farm::ErrorCode;
+grpc::Status to_status(const store::Error& error) {
+    using store::ErrorCode;
     grpc::StatusCode code = grpc::StatusCode::INTERNAL;
     switch (error.code) {
         case ErrorCode::invalid_argument:
@@ -54,7 +54,7 @@ std::string map_name(const map::Digest& digest) {
     return fmt::format("{}{}", map_prefix, to_hex(digest));
 }
 
-farm::Result<std::int64_t> job_from_name(const std::string& name) {
+store::Result<std::int64_t> job_from_name(const std::string& name) {
     std::int64_t id = 0;
     if (name.starts_with(job_prefix)) {
         const char* end = name.data() + name.size();
@@ -62,43 +62,43 @@ farm::Result<std::int64_t> job_from_name(const std::string& name) {
         if (error == std::errc() && stopped == end && id > 0)
             return id;
     }
-    return farm::fail(farm::ErrorCode::invalid_argument,
-                      fmt::format("'{}' is not the name of a job (jobs/<number>)", shortened(name)));
+    return store::fail(store::ErrorCode::invalid_argument,
+                       fmt::format("'{}' is not the name of a job (jobs/<number>)", shortened(name)));
 }
 
-farm::Result<map::Digest> map_from_name(const std::string& name) {
+store::Result<map::Digest> map_from_name(const std::string& name) {
     if (name.starts_with(map_prefix)) {
         if (const auto digest = map::digest_from_hex(name.substr(map_prefix.size())))
             return *digest;
     }
-    return farm::fail(farm::ErrorCode::invalid_argument,
-                      fmt::format("'{}' is not the name of a map (maps/<digest>)", shortened(name)));
+    return store::fail(store::ErrorCode::invalid_argument,
+                       fmt::format("'{}' is not the name of a map (maps/<digest>)", shortened(name)));
 }
 
-farm::Result<map::Digest> digest_from_text(const std::string& hex) {
+store::Result<map::Digest> digest_from_text(const std::string& hex) {
     if (const auto digest = map::digest_from_hex(hex))
         return *digest;
-    return farm::fail(
-        farm::ErrorCode::invalid_argument,
+    return store::fail(
+        store::ErrorCode::invalid_argument,
         fmt::format("'{}' is not a SHA-256 digest of 64 lower-case hexadecimal digits", shortened(hex)));
 }
 
-farm::Result<Page> page_of(const std::string& token,
-                           std::int32_t size,
-                           std::int64_t start,
-                           std::int64_t default_size,
-                           std::int64_t max_size) {
+store::Result<Page> page_of(const std::string& token,
+                            std::int32_t size,
+                            std::int64_t start,
+                            std::int64_t default_size,
+                            std::int64_t max_size) {
     Page page{start, size == 0 ? default_size : std::min<std::int64_t>(size, max_size)};
     if (!token.empty()) {
         const char* end = token.data() + token.size();
         const auto [stopped, error] = std::from_chars(token.data(), end, page.from);
         if (error != std::errc() || stopped != end || page.from < 0)
-            return farm::fail(farm::ErrorCode::invalid_argument,
-                              fmt::format("'{}' is not a page token of this server", shortened(token)));
+            return store::fail(store::ErrorCode::invalid_argument,
+                               fmt::format("'{}' is not a page token of this server", shortened(token)));
     }
     if (size < 0)
-        return farm::fail(farm::ErrorCode::invalid_argument,
-                          fmt::format("the page size {} is negative", size));
+        return store::fail(store::ErrorCode::invalid_argument,
+                           fmt::format("the page size {} is negative", size));
     return page;
 }
 

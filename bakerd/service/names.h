@@ -1,8 +1,8 @@
 // Between the contract's text and the farm's values: resource names, digests, statuses.
 #pragma once
 
-#include "bakerd/farm/error.h"
 #include "bakerd/map/digest.h"
+#include "bakerd/store/error.h"
 
 #include <grpcpp/support/status.h>
 
@@ -11,15 +11,15 @@
 
 namespace drtv::service {
 
-[[nodiscard]] grpc::Status to_status(const farm::Error& error);
+[[nodiscard]] grpc::Status to_status(const store::Error& error);
 
 [[nodiscard]] std::string job_name(std::int64_t id);            // "jobs/12"
 [[nodiscard]] std::string map_name(const map::Digest& digest);  // "maps/<hex>"
 
 // invalid_argument with a sentence for anything else.
-[[nodiscard]] farm::Result<std::int64_t> job_from_name(const std::string& name);
-[[nodiscard]] farm::Result<map::Digest> map_from_name(const std::string& name);
-[[nodiscard]] farm::Result<map::Digest> digest_from_text(const std::string& hex);
+[[nodiscard]] store::Result<std::int64_t> job_from_name(const std::string& name);
+[[nodiscard]] store::Result<map::Digest> map_from_name(const std::string& name);
+[[nodiscard]] store::Result<map::Digest> digest_from_text(const std::string& hex);
 
 // A list request's page: where it starts (the number in its token, `start` without one) and how many it
 // holds.
@@ -27,10 +27,10 @@ struct Page {
     std::int64_t from = 0;
     std::int64_t size = 0;
 };
-[[nodiscard]] farm::Result<Page> page_of(const std::string& token,
-                                         std::int32_t size,
-                                         std::int64_t start,
-                                         std::int64_t default_size,
-                                         std::int64_t max_size);
+[[nodiscard]] store::Result<Page> page_of(const std::string& token,
+                                          std::int32_t size,
+                                          std::int64_t start,
+                                          std::int64_t default_size,
+                                          std::int64_t max_size);
 
 }  // namespace drtv::service

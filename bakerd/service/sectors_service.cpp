@@ -13,31 +13,31 @@ constexpr std::int64_t default_page = 1000, max_page = 10000;
 v1::Sector::State to_proto(const farm::SectorView& view) {
     if (view.running)
         return v1::Sector::RUNNING;
-    switch (view.task.state) {
-        case farm::TaskState::pending:
+    switch (view.row.state) {
+        case farm::SectorState::waiting:
             return v1::Sector::PENDING;
-        case farm::TaskState::done:
+        case farm::SectorState::done:
             return v1::Sector::DONE;
-        case farm::TaskState::failed:
+        case farm::SectorState::failed:
             return v1::Sector::FAILED;
     }
     return v1::Sector::STATE_UNSPECIFIED;
 }
 
 void fill(const farm::SectorView& view, v1::Sector& out) {
-    const farm::TaskRow& row = view.task;
+    const farm::JobSectorRow& row = view.row;
     out.mutable_coordinate()->set_i(row.sector.i);
     out.mutable_coordinate()->set_j(row.sector.j);
     out.set_state(to_proto(view));
     out.set_failed_attempts(row.failed_attempts);
     out.set_error(row.error);
-    if (row.state != farm::TaskState::done)
+    if (row.state != farm::SectorState::done)
         return;
-    out.set_sha256(to_hex(row.result.result));
-    out.set_size_bytes(row.result.size_bytes);
-    out.set_probes(row.result.probes);
-    out.set_rays(row.result.rays);
-    for (const std::string& warning : row.result.warnings)
+    out.set_sha256(to_hex(row.file));
+    out.set_size_bytes(row.file_bytes);
+    out.set_probes(row.probes);
+    out.set_rays(row.rays);
+    for (const std::string& warning : row.warnings)
         out.add_warnings(warning);
 }
 
@@ -94,7 +94,7 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
             if (!views)
                 return to_status(views.error());
             for (const farm::SectorView& view : *views) {
-                if (view.task.state != farm::TaskState::done)
+                if (view.row.state != farm::SectorState::done)
                     continue;
                 if (grpc::Status status = send_or_note(view); !status.ok())
                     return status;
@@ -107,7 +107,7 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
         const auto view = farm_.get_sector(*job, {coordinate.i(), coordinate.j()});
         if (!view)
             return to_status(view.error());
-        if (view->task.state != farm::TaskState::done)
+        if (view->row.state != farm::SectorState::done)
             return {grpc::StatusCode::FAILED_PRECONDITION,
                     fmt::format("sector ({}, {}) is not done", coordinate.i(), coordinate.j())};
         if (grpc::Status status = send_or_note(*view); !status.ok())
@@ -118,11 +118,11 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
 
 grpc::Status SectorsService::send(const farm::SectorView& view,
                                   grpc::ServerWriter<v1::PullSectorsResponse>& writer) {
-    const auto bytes = farm_.blobs().get(view.task.result.result);
+    const auto bytes = farm_.blobs().get(view.row.file);
     if (!bytes)
-        return {grpc::StatusCode::DATA_LOSS,
-                fmt::format(
-                    "sector ({}, {}): {}", view.task.sector.i, view.task.sector.j, bytes.error().message)};
+        return {
+            grpc::StatusCode::DATA_LOSS,
+            fmt::format("sector ({}, {}): {}", view.row.sector.i, view.row.sector.j, bytes.error().message)};
     v1::PullSectorsResponse message;
     fill(view, *message.mutable_sector());
     if (!writer.Write(message))

@@ -1,5 +1,5 @@
 #include "bakerd/farm/data_folder.h"
-#include "tests/farm/temporary_folder.h"
+#include "tests/store/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ TEST(DataFolder, ASecondLockIsRefusedAndNamesTheProcess) {
         for (int n = 0; n < 2; ++n) {  // a refused one must not free the lock
             const auto second = DataFolder::lock(folder.path());
             ASSERT_FALSE(second);
-            EXPECT_EQ(second.error().code, ErrorCode::failed_precondition);
+            EXPECT_EQ(second.error().code, store::ErrorCode::failed_precondition);
             EXPECT_NE(second.error().message.find("(process " + std::to_string(::getpid()) + ")"),
                       std::string::npos)
                 << second.error().message;

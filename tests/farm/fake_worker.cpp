@@ -2,7 +2,7 @@
 // request:
 //
 //     fake_worker normal | gate FILE | die_at_start | garbage | close_output | reverse N
-#include "bakerd/farm/worker_protocol.h"
+#include "bakerd/worker/protocol.h"
 
 #include <unistd.h>
 
@@ -21,21 +21,26 @@
 
 namespace {
 
-using namespace drtv::farm;
+using namespace drtv::worker;
 namespace fake = drtv::test::fake;
 
 std::filesystem::path gate;
 
-void say(const WorkerAnswer& answer) {
+void say(const Answer& answer) {
     std::printf("%s\n", encode(answer).c_str());
     std::fflush(stdout);
 }
 
-BakeAnswer baked(const BakeRequest& request) {
-    return {request.manifest, request.settings.rays, request.sector.j, 7, {}};
+SectorResult baked(const BakeRequest& request) {
+    SectorResult result;
+    result.blobs.file = request.manifest;
+    result.file_bytes = request.settings.rays;
+    result.probes = request.sector.j;
+    result.rays = 7;
+    return result;
 }
 
-void answer(const BakeRequest& request) {
+void answer(std::uint64_t id, const BakeRequest& request) {
     static std::map<std::int32_t, int> tries;
     switch (request.sector.i) {
         case fake::deadly:
@@ -46,45 +51,45 @@ void answer(const BakeRequest& request) {
         case fake::silent:
             return;
         case fake::gated:
-            std::thread([request] {
+            std::thread([id, request] {
                 while (!std::filesystem::exists(gate))
                     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-                say({request.id, baked(request)});
+                say({id, baked(request)});
             }).detach();
             return;
         case fake::fails_once:
             if (tries[request.sector.j]++ == 0)
-                return say({request.id, FailureAnswer{"not now", true}});
+                return say({id, Failure{"not now", true}});
             break;
         case fake::always_later:
-            return say({request.id, FailureAnswer{"the disk is full", true}});
+            return say({id, Failure{"the disk is full", true}});
         case fake::hopeless:
-            return say({request.id, FailureAnswer{"the sector is bad", false}});
+            return say({id, Failure{"the sector is bad", false}});
         case fake::unknown_id:
-            say({request.id + 1000000, baked(request)});
+            say({id + 1000000, baked(request)});
             break;
         case fake::twice:
-            say({request.id, baked(request)});
+            say({id, baked(request)});
             break;
         default:
             break;
     }
-    say({request.id, baked(request)});
+    say({id, baked(request)});
 }
 
-void answer(const AssessRequest& request) {
-    say({request.id, FailureAnswer{"the fake worker has no opinion", false}});
+void answer(std::uint64_t id, const AssessRequest&) {
+    say({id, Failure{"the fake worker has no opinion", false}});
 }
 
-void answer(const InspectRequest& request) {
+void answer(std::uint64_t id, const InspectRequest& request) {
     if (request.manifest.bytes[0] == fake::silent_map)
         return;
     if (request.manifest.bytes[0] == fake::deadly_map)
         std::raise(SIGKILL);
-    InspectAnswer inspected;
+    MapSummary inspected;
     inspected.content = request.manifest;
     inspected.object_count = 5;
-    say({request.id, inspected});
+    say({id, inspected});
 }
 
 }  // namespace
@@ -98,7 +103,7 @@ int main(int argc, char** argv) {
     if (mode == "gate" && argc > 2)
         gate = argv[2];
     std::size_t batch = mode == "reverse" && argc > 2 ? std::stoul(argv[2]) : 1;
-    std::vector<WorkerRequest> held;
+    std::vector<Request> held;
     std::string line;
     while (std::getline(std::cin, line)) {
         const auto request = decode_request(line);
@@ -113,7 +118,7 @@ int main(int argc, char** argv) {
         if (held.size() < batch)
             continue;
         for (auto entry = held.rbegin(); entry != held.rend(); ++entry)
-            std::visit([](const auto& r) { answer(r); }, *entry);
+            std::visit([&](const auto& what) { answer(entry->id, what); }, entry->what);
         held.clear();
     }
     std::_Exit(0);

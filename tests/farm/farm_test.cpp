@@ -1,6 +1,6 @@
 // The farm with the real worker on a map of four sectors.
 #include "bakerd/farm/farm.h"
-#include "tests/farm/temporary_folder.h"
+#include "tests/store/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ class FarmTest : public testing::Test {
         return data() + "/blobs/objects/" + to_hex(digest).substr(0, 2) + "/" + to_hex(digest);
     }
 
-    Result<MapView> create(const std::string& gltf) {
+    store::Result<MapView> create(const std::string& gltf) {
         const Digest digest = farm->blobs().put(bytes_of(gltf)).value();
         return farm->create_map(
             {{{"map.gltf", digest, static_cast<std::int64_t>(gltf.size())}}, {"map.gltf"}});
@@ -103,17 +103,17 @@ class FarmTest : public testing::Test {
         JobView view = farm->get_job(id).value();
         while (!enough(view) && std::chrono::steady_clock::now() < end)
             view = farm->wait_for_change(id, view.version, 500ms).value();
-        EXPECT_TRUE(enough(view)) << "job " << id << " hangs at " << view.counts.done << " of "
-                                  << view.counts.total;
+        EXPECT_TRUE(enough(view)) << "job " << id << " hangs at " << view.row.sectors_done << " of "
+                                  << view.row.sectors_total;
         return view;
     }
 
     void expect_succeeded(const JobView& view, std::int64_t sectors) {
         EXPECT_EQ(view.row.state, JobState::succeeded) << view.row.error;
-        EXPECT_EQ(std::tuple(view.counts.total, view.counts.done, view.counts.failed),
+        EXPECT_EQ(std::tuple(view.row.sectors_total, view.row.sectors_done, view.row.sectors_failed),
                   std::tuple(sectors, sectors, 0));
-        EXPECT_GT(view.counts.probes, 0);
-        EXPECT_GE(view.row.ended_seconds, view.row.created_seconds);
+        EXPECT_GT(view.row.probes, 0);
+        EXPECT_GE(view.row.ended_ms, view.row.created_ms);
     }
 
     std::vector<SectorView> sectors(std::int64_t job) { return farm->list_sectors(job, 0, 1000).value(); }
@@ -121,7 +121,7 @@ class FarmTest : public testing::Test {
         std::vector<Digest> found;
         const std::vector<SectorView> all = sectors(job);
         for (const SectorView& sector : all)
-            found.push_back(sector.task.result.result);
+            found.push_back(sector.row.file);
         return found;
     }
 
@@ -137,7 +137,7 @@ TEST_F(FarmTest, AMapIsImportedOnceAndFoundAgain) {
     EXPECT_EQ(create(ground_gltf(128))->id, map->id);
     EXPECT_EQ(farm->get_map(map->id)->summary.content, map->summary.content);
     EXPECT_NE(create(ground_gltf(128, 1))->id, map->id);
-    EXPECT_EQ(farm->get_map(map::digest_of(bytes_of("x"))).error().code, ErrorCode::not_found);
+    EXPECT_EQ(farm->get_map(map::digest_of(bytes_of("x"))).error().code, store::ErrorCode::not_found);
 }
 
 TEST_F(FarmTest, ABadMapIsRefusedWithTheImportersSentence) {
@@ -146,7 +146,7 @@ TEST_F(FarmTest, ABadMapIsRefusedWithTheImportersSentence) {
           ground_gltf(128).substr(0, 400)}) {
         const auto map = create(bad);
         ASSERT_FALSE(map) << bad;
-        EXPECT_EQ(map.error().code, ErrorCode::invalid_argument);
+        EXPECT_EQ(map.error().code, store::ErrorCode::invalid_argument);
         EXPECT_NE(map.error().message.find("map.gltf"), std::string::npos) << map.error().message;
         EXPECT_EQ(create(bad).error().message, map.error().message);
     }
@@ -156,7 +156,7 @@ TEST_F(FarmTest, ABadMapIsRefusedWithTheImportersSentence) {
 TEST_F(FarmTest, AFileThatWasNotUploadedIsNamed) {
     const auto map = farm->create_map({{{"map.gltf", map::digest_of(bytes_of("nowhere")), 7}}, {"map.gltf"}});
     ASSERT_FALSE(map);
-    EXPECT_EQ(map.error().code, ErrorCode::failed_precondition);
+    EXPECT_EQ(map.error().code, store::ErrorCode::failed_precondition);
     EXPECT_NE(map.error().message.find("'map.gltf'"), std::string::npos) << map.error().message;
 }
 
@@ -177,23 +177,23 @@ TEST_F(FarmTest, AJobBakesAndAResubmitIsAllCache) {
 TEST_F(FarmTest, WrongRequestsAreRefusedAndLeaveNoJob) {
     const Digest map = create(ground_gltf(128))->id;
     JobRequest request = quick(map::digest_of(bytes_of("no map")));
-    EXPECT_EQ(farm->create_job(request).error().code, ErrorCode::not_found);
+    EXPECT_EQ(farm->create_job(request).error().code, store::ErrorCode::not_found);
     request = quick(map);
     request.region = Region{1000, 1000, 1001, 1001};
-    EXPECT_EQ(farm->create_job(request).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(farm->create_job(request).error().code, store::ErrorCode::invalid_argument);
     request = quick(map);
     request.request_id = std::string(65, 'x');
-    EXPECT_EQ(farm->create_job(request).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(farm->create_job(request).error().code, store::ErrorCode::invalid_argument);
     request = quick(map);
     request.preset = "best";
-    EXPECT_EQ(farm->create_job(request).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(farm->create_job(request).error().code, store::ErrorCode::invalid_argument);
     EXPECT_TRUE(farm->list_jobs(INT64_MAX, 10)->empty());
     for (const std::int64_t id : {0, -1, 7}) {
-        EXPECT_EQ(farm->get_job(id).error().code, ErrorCode::not_found);
-        EXPECT_EQ(farm->cancel_job(id).error().code, ErrorCode::not_found);
-        EXPECT_EQ(farm->wait_for_change(id, 0, 1ms).error().code, ErrorCode::not_found);
-        EXPECT_EQ(farm->list_sectors(id, 0, 1).error().code, ErrorCode::not_found);
-        EXPECT_EQ(farm->get_sector(id, {0, 0}).error().code, ErrorCode::not_found);
+        EXPECT_EQ(farm->get_job(id).error().code, store::ErrorCode::not_found);
+        EXPECT_EQ(farm->cancel_job(id).error().code, store::ErrorCode::not_found);
+        EXPECT_EQ(farm->wait_for_change(id, 0, 1ms).error().code, store::ErrorCode::not_found);
+        EXPECT_EQ(farm->list_sectors(id, 0, 1).error().code, store::ErrorCode::not_found);
+        EXPECT_EQ(farm->get_sector(id, {0, 0}).error().code, store::ErrorCode::not_found);
     }
 }
 
@@ -203,10 +203,10 @@ TEST_F(FarmTest, ARegionBakesOnlyWhatItTouches) {
     const JobView view = wait(submit(request).row.id);
     expect_succeeded(view, 2);
     const std::vector<SectorView> all = sectors(view.row.id);
-    EXPECT_EQ(all[0].task.sector, (map::SectorCoordinate{1, 0}));
-    EXPECT_EQ(all[1].task.sector, (map::SectorCoordinate{1, 1}));
+    EXPECT_EQ(all[0].row.sector, (map::SectorCoordinate{1, 0}));
+    EXPECT_EQ(all[1].row.sector, (map::SectorCoordinate{1, 1}));
     EXPECT_TRUE(farm->get_sector(view.row.id, {1, 1}));
-    EXPECT_EQ(farm->get_sector(view.row.id, {0, 0}).error().code, ErrorCode::not_found);
+    EXPECT_EQ(farm->get_sector(view.row.id, {0, 0}).error().code, store::ErrorCode::not_found);
 }
 
 TEST_F(FarmTest, TwoJobsThatShareSectorsBakeEachOnce) {
@@ -220,7 +220,7 @@ TEST_F(FarmTest, TwoJobsThatShareSectorsBakeEachOnce) {
     std::int64_t rays = 0;
     const std::vector<SectorView> all = sectors(one.row.id);
     for (const SectorView& sector : all)
-        rays += sector.task.result.rays;
+        rays += sector.row.rays;
     EXPECT_EQ(first.rays, rays);
 }
 
@@ -251,7 +251,7 @@ TEST_F(FarmTest, CancelKeepsWhatIsDoneAndIsFinal) {
     done.region = Region{1, 1, 1, 1};
     expect_succeeded(wait(submit(done).row.id), 1);
     const std::int64_t whole = submit(quick(map)).row.id;
-    EXPECT_GE(farm->cancel_job(whole)->counts.done, 1);
+    EXPECT_GE(farm->cancel_job(whole)->row.sectors_done, 1);
     const JobView again =
         wait(submit(quick(map)).row.id);  // while the cancelled one's sectors may still be at work
     expect_succeeded(again, 4);
@@ -262,7 +262,7 @@ TEST_F(FarmTest, ARestartGoesOnWithTheRunningJob) {
     const Digest map = create(ground_gltf(512))->id;
     const std::int64_t id = submit(quick(map)).row.id, cancelled = submit(endless(map)).row.id;
     ASSERT_TRUE(farm->cancel_job(cancelled));
-    wait(id, [](const JobView& view) { return view.counts.done >= 5; });
+    wait(id, [](const JobView& view) { return view.row.sectors_done >= 5; });
     farm.reset();
     open();
     const JobView view = wait(id);
@@ -279,7 +279,7 @@ TEST_F(FarmTest, StopPutsBackWhatDoesNotFinish) {
     farm.reset();
     open();
     EXPECT_EQ(farm->get_job(id)->row.state, JobState::running);
-    EXPECT_EQ(farm->get_sector(id, {0, 0})->task.failed_attempts, 0);
+    EXPECT_EQ(farm->get_sector(id, {0, 0})->row.failed_attempts, 0);
 }
 
 TEST_F(FarmTest, ALostResultIsBakedAgainOnResubmit) {
@@ -390,11 +390,11 @@ TEST_F(FarmTest, TheCacheKeepsToItsLimit) {
 TEST_F(FarmTest, ASectorAskedForAnewIsNotCountedTwiceByARunningJob) {
     const Digest map = create(ground_gltf(512))->id;
     const std::int64_t first = submit(quick(map, 2048)).row.id;
-    wait(first, [](const JobView& view) { return view.counts.done >= 2; });
+    wait(first, [](const JobView& view) { return view.row.sectors_done >= 2; });
     const std::vector<SectorView> all = sectors(first);
     for (const SectorView& sector : all) {
-        if (sector.task.state == TaskState::done)
-            std::filesystem::remove(object(sector.task.result.result));
+        if (sector.row.state == SectorState::done)
+            std::filesystem::remove(object(sector.row.file));
     }
     ASSERT_EQ(farm->get_job(first)->row.state, JobState::running) << "too quick for this test";
     const std::int64_t second = submit(quick(map, 2048)).row.id;
@@ -449,13 +449,13 @@ TEST_F(FarmTest, AMapWithoutGroundSucceedsAtOnceWithNothing) {
     ASSERT_TRUE(map) << map.error().message;
     const JobView view = submit(quick(map->id));
     EXPECT_EQ(view.row.state, JobState::succeeded);
-    EXPECT_EQ(view.counts.total, 0);
+    EXPECT_EQ(view.row.sectors_total, 0);
 }
 
 TEST_F(FarmTest, OneFolderHasOneFarm) {
     const auto second = Farm::open({data(), {"/bin/false"}, 1});
     ASSERT_FALSE(second);
-    EXPECT_EQ(second.error().code, ErrorCode::failed_precondition);
+    EXPECT_EQ(second.error().code, store::ErrorCode::failed_precondition);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ void expect_chosen(const Region& region, Sectors expected) {
 void expect_refused(const Region& region, const std::string& with) {
     const auto chosen = sectors_of(region, ground());
     ASSERT_FALSE(chosen) << with;
-    EXPECT_EQ(chosen.error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(chosen.error().code, store::ErrorCode::invalid_argument);
     EXPECT_NE(chosen.error().message.find(with), std::string::npos) << chosen.error().message;
 }
 
@@ -95,7 +95,7 @@ TEST(SettingsOf, OverridesChangeAPreset) {
 TEST(SettingsOf, WrongOnesAreInvalidArguments) {
     const auto refused = [](const std::string& preset, const std::map<std::string, std::string>& overrides) {
         const auto settings = settings_of({{}, preset, overrides, {}, ""});
-        return !settings && settings.error().code == ErrorCode::invalid_argument &&
+        return !settings && settings.error().code == store::ErrorCode::invalid_argument &&
                !settings.error().message.empty();
     };
     EXPECT_TRUE(refused("", {}));
@@ -105,18 +105,6 @@ TEST(SettingsOf, WrongOnesAreInvalidArguments) {
     for (const char* value : {"nan", "inf", "-1", "0", "1e30", ""})
         EXPECT_TRUE(refused("draft", {{"reach", value}})) << value;
     EXPECT_TRUE(refused("draft", {{"colour", "red"}}));
-}
-
-TEST(JobRequest, RegionAndOverridesComeBackFromTheDatabase) {
-    const Region region{-0.1, 1e-9, 1.0 / 3, 1e9};
-    const auto read = decode_region(encode_region(region));
-    ASSERT_TRUE(read);
-    EXPECT_EQ(std::tuple(read->x0, read->y0, read->x1, read->y1),
-              std::tuple(region.x0, region.y0, region.x1, region.y1));
-    EXPECT_FALSE(decode_region(encode_region(std::nullopt)));
-    const std::map<std::string, std::string> overrides = {{"rays", "64"}, {"a \"b\"", ""}};
-    EXPECT_EQ(decode_overrides(encode_overrides(overrides)), overrides);
-    EXPECT_TRUE(decode_overrides("").empty());
 }
 
 }  // namespace

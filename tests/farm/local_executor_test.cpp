@@ -1,6 +1,6 @@
 #include "bakerd/farm/local_executor.h"
 #include "tests/farm/fake_worker.h"
-#include "tests/farm/temporary_folder.h"
+#include "tests/store/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -24,16 +24,17 @@ class LocalExecutorTest : public testing::Test {
 
     void start(std::vector<std::string> command, int threads = 2) {
         LocalExecutor::Callbacks callbacks;
-        callbacks.next = [this]() -> std::optional<BakeRequest> {
+        callbacks.next = [this]() -> std::optional<SectorTask> {
             const std::lock_guard lock(mutex);
             if (queue.empty())
                 return std::nullopt;
-            const BakeRequest request = queue.front();
+            const SectorTask request = queue.front();
             queue.pop_front();
             changed.notify_all();
             return request;
         };
-        callbacks.finished = [this](std::uint64_t id, int failed_attempts, Outcome outcome) {
+        callbacks.finished = [this](std::uint64_t id, int failed_attempts,
+                                    Reply<worker::SectorResult> outcome) {
             const std::lock_guard lock(mutex);
             EXPECT_TRUE(outcomes.emplace(id, std::pair(failed_attempts, std::move(outcome))).second)
                 << id << " finished twice";
@@ -48,7 +49,7 @@ class LocalExecutorTest : public testing::Test {
     void add(std::int32_t behaviour) {
         const std::lock_guard lock(mutex);
         const auto id = static_cast<std::uint64_t>(added++);
-        queue.push_back({id, {}, {behaviour, static_cast<std::int32_t>(id)}, {}, {}});
+        queue.push_back({id, {{}, {behaviour, static_cast<std::int32_t>(id)}, {}, {}}});
     }
 
     bool wait_for_all() {
@@ -65,24 +66,24 @@ class LocalExecutorTest : public testing::Test {
     }
 
     void expect_baked(std::uint64_t id) {
-        const auto* baked = std::get_if<BakeAnswer>(&outcomes.at(id).second);
-        ASSERT_NE(baked, nullptr) << "sector " << id;
+        const auto& baked = outcomes.at(id).second;
+        ASSERT_TRUE(baked) << "sector " << id;
         EXPECT_EQ(baked->probes, static_cast<std::int64_t>(id));
     }
     void expect_failed(std::uint64_t id, int attempts, const std::string& with) {
-        const auto* failure = std::get_if<FailureAnswer>(&outcomes.at(id).second);
-        ASSERT_NE(failure, nullptr) << "sector " << id;
+        const auto& reply = outcomes.at(id).second;
+        ASSERT_FALSE(reply) << "sector " << id;
         EXPECT_EQ(outcomes.at(id).first, attempts);
-        EXPECT_NE(failure->sentence.find(with), std::string::npos) << failure->sentence;
+        EXPECT_NE(reply.error().sentence.find(with), std::string::npos) << reply.error().sentence;
     }
 
     std::chrono::milliseconds stall_limit = std::chrono::minutes(30);
     std::mutex mutex;
     std::condition_variable changed;
-    std::deque<BakeRequest> queue;                              // guarded by mutex
-    std::map<std::uint64_t, std::pair<int, Outcome>> outcomes;  // guarded by mutex
-    std::size_t added = 0;                                      // guarded by mutex
-    std::unique_ptr<LocalExecutor> executor;                    // last: its thread uses the above
+    std::deque<SectorTask> queue;                                                   // guarded by mutex
+    std::map<std::uint64_t, std::pair<int, Reply<worker::SectorResult>>> outcomes;  // guarded by mutex
+    std::size_t added = 0;                                                          // guarded by mutex
+    std::unique_ptr<LocalExecutor> executor;  // last: its thread uses the above
 };
 
 TEST_F(LocalExecutorTest, SectorsAreBakedAndEachAnswerFindsItsOwn) {
@@ -179,11 +180,9 @@ TEST_F(LocalExecutorTest, InspectionsAreAnsweredWhileSectorsWait) {
     executor->wake();
     map::Digest manifest;
     manifest.bytes[5] = 77;
-    auto answer = executor->ask(InspectRequest{0, manifest});
+    auto answer = executor->inspect({manifest});
     ASSERT_EQ(answer.wait_for(long_enough), std::future_status::ready);
-    const Outcome outcome = answer.get();
-    ASSERT_TRUE(std::holds_alternative<InspectAnswer>(outcome));
-    EXPECT_EQ(std::get<InspectAnswer>(outcome).content, manifest);
+    EXPECT_EQ(answer.get().value().content, manifest);
     EXPECT_TRUE(wait_for_all());
 }
 
@@ -193,11 +192,11 @@ TEST_F(LocalExecutorTest, AMapThatKillsTheWorkerFailsWithAReason) {
     manifest.bytes[0] = fake::deadly_map;
     for (int n = 0; n < 10; ++n)
         add(fake::good);
-    auto answer = executor->ask(InspectRequest{0, manifest});
+    auto answer = executor->inspect({manifest});
     ASSERT_EQ(answer.wait_for(long_enough), std::future_status::ready);
-    const Outcome outcome = answer.get();
-    ASSERT_TRUE(std::holds_alternative<FailureAnswer>(outcome));
-    EXPECT_NE(std::get<FailureAnswer>(outcome).sentence.find("signal 9"), std::string::npos);
+    const auto reply = answer.get();
+    ASSERT_FALSE(reply);
+    EXPECT_NE(reply.error().sentence.find("signal 9"), std::string::npos);
     ASSERT_TRUE(wait_for_all());
     for (std::uint64_t id = 0; id < 10; ++id)
         expect_baked(id);
@@ -208,7 +207,7 @@ TEST_F(LocalExecutorTest, AnInspectionThatMustWaitCostsNoTime) {
     for (int n = 0; n < 3; ++n)
         add(fake::silent);  // the window is full, for ever
     wait_until_taken(3);
-    auto answer = executor->ask(InspectRequest{0, {}});
+    auto answer = executor->inspect({{}});
     const std::clock_t before = std::clock();
     EXPECT_EQ(answer.wait_for(500ms), std::future_status::timeout);
     EXPECT_LT(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC,
@@ -221,17 +220,17 @@ TEST_F(LocalExecutorTest, TheDestructorAnswersPendingInspections) {
     start_fake("normal", 1);
     map::Digest silent;
     silent.bytes[0] = fake::silent_map;
-    std::vector<std::future<Outcome>> answers;
+    std::vector<std::future<Reply<worker::MapSummary>>> answers;
     for (int n = 0; n < 6; ++n)
-        answers.push_back(executor->ask(InspectRequest{0, silent}));
+        answers.push_back(executor->inspect({silent}));
     std::this_thread::sleep_for(100ms);
     executor.reset();
     for (auto& answer : answers) {
         ASSERT_EQ(answer.wait_for(0s), std::future_status::ready);
-        const Outcome outcome = answer.get();
-        ASSERT_TRUE(std::holds_alternative<FailureAnswer>(outcome));
-        EXPECT_EQ(std::get<FailureAnswer>(outcome).sentence, "the server is stopping");
-        EXPECT_TRUE(std::get<FailureAnswer>(outcome).may_retry);
+        const auto reply = answer.get();
+        ASSERT_FALSE(reply);
+        EXPECT_EQ(reply.error().sentence, "the server is stopping");
+        EXPECT_TRUE(reply.error().may_retry);
     }
 }
 
@@ -244,7 +243,7 @@ TEST_F(LocalExecutorTest, StopWaitsForWhatIsInFlightAndStartsNothing) {
     wait_until_taken(3);  // the window
     std::thread stopping([&] { executor->stop(long_enough); });
     // A question is refused from the moment on that the stop has begun; the gate opens only then.
-    while (executor->ask(InspectRequest{0, {}}).wait_for(2ms) != std::future_status::ready) {
+    while (executor->inspect({{}}).wait_for(2ms) != std::future_status::ready) {
     }
     EXPECT_TRUE(outcomes.empty());
     test::write_file(gate, "open");

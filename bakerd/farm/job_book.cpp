@@ -1,0 +1,221 @@
+#include "bakerd/farm/job_book.h"
+
+#include "bakerd/reuse/footprint.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace drtv::farm {
+
+void JobBook::add(JobRow row, std::span<const WantedSector> wanted, std::vector<std::string> warnings) {
+    const std::lock_guard lock(mutex_);
+    Job& job = jobs_[row.id];
+    job.row = std::move(row);
+    job.warnings = std::move(warnings);
+    if (!job.row.request_id.empty())
+        by_request_[job.row.request_id] = job.row.id;
+    for (const WantedSector& sector : wanted) {
+        const std::uint64_t id = task_for(job, sector);
+        tasks_.at(id).jobs.insert(job.row.id);
+        job.tasks[sector.sector] = id;
+    }
+}
+
+// One that asks for the exact result serves as well: better than to bake the sector twice.
+std::uint64_t JobBook::task_for(const Job& job, const WantedSector& wanted) {
+    BakeKey key{reuse::results_key(job.row.settings), job.row.inventory, wanted.sector, 0};
+    for (const float tolerance : {0.0f, job.row.settings.tolerance}) {
+        key.tolerance = tolerance;
+        if (const auto known = tasks_by_key_.find(key); known != tasks_by_key_.end())
+            return known->second;
+    }
+    const std::uint64_t id = next_task_++;
+    Task& task = tasks_[id];
+    task.key = key;
+    task.request = {job.row.manifest, wanted.sector, job.row.settings, {}};
+    if (wanted.earlier) {
+        task.request.earlier = wanted.earlier->result.blobs;
+        task.earlier_seconds = wanted.earlier->result.seconds;
+    }
+    tasks_by_key_[key] = id;
+    queue_.push_back(id);
+    return id;
+}
+
+std::optional<std::int64_t> JobBook::begin_request(const std::string& request_id) {
+    if (request_id.empty())
+        return std::nullopt;
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return !open_requests_.contains(request_id); });
+    if (const auto known = by_request_.find(request_id); known != by_request_.end())
+        return known->second;
+    open_requests_.insert(request_id);
+    return std::nullopt;
+}
+
+void JobBook::end_request(const std::string& request_id) {
+    {
+        const std::lock_guard lock(mutex_);
+        open_requests_.erase(request_id);
+    }
+    changed_.notify_all();
+}
+
+std::optional<SectorTask> JobBook::next() {
+    const std::lock_guard lock(mutex_);
+    while (!queue_.empty()) {
+        const std::uint64_t id = queue_.front();
+        queue_.pop_front();
+        const auto found = tasks_.find(id);
+        if (found == tasks_.end())
+            continue;  // its jobs were cancelled
+        Task& task = found->second;
+        task.running = true;
+        for (const std::int64_t job_id : task.jobs) {
+            Job& job = jobs_.at(job_id);
+            if (!job.started)
+                job.started = Clock::now();
+        }
+        return SectorTask{id, task.request};
+    }
+    return std::nullopt;
+}
+
+std::optional<FinishedSector> JobBook::finish(std::uint64_t id,
+                                              int failed_attempts,
+                                              Reply<worker::SectorResult> reply) {
+    const std::lock_guard lock(mutex_);
+    const auto found = tasks_.find(id);
+    if (found == tasks_.end())
+        return std::nullopt;
+    Task& task = found->second;
+    task.finished = true;
+    // What it takes from nothing is known of the earlier result.
+    if (reply && task.earlier_seconds > 0)
+        reply->seconds = task.earlier_seconds;
+    return FinishedSector{
+        id, task.key, {task.jobs.begin(), task.jobs.end()}, failed_attempts, std::move(reply)};
+}
+
+std::vector<std::int64_t> JobBook::leave(std::uint64_t id, std::span<const std::int64_t> recorded) {
+    const std::lock_guard lock(mutex_);
+    const auto found = tasks_.find(id);
+    if (found == tasks_.end())
+        return {};
+    Task& task = found->second;
+    for (const std::int64_t job_id : recorded) {
+        task.jobs.erase(job_id);
+        jobs_.at(job_id).tasks.erase(task.key.sector);
+    }
+    if (task.jobs.empty())
+        erase(id);
+    return {task.jobs.begin(), task.jobs.end()};
+}
+
+void JobBook::put_back(std::uint64_t id) {
+    const std::lock_guard lock(mutex_);
+    const auto found = tasks_.find(id);
+    if (found == tasks_.end())
+        return;
+    Task& task = found->second;
+    task.running = task.finished = false;
+    if (task.jobs.empty())
+        erase(id);
+    else
+        queue_.push_back(id);
+}
+
+void JobBook::update(const JobRow& row, const worker::SectorResult* result) {
+    const std::lock_guard lock(mutex_);
+    Job& job = jobs_.at(row.id);
+    job.row = row;
+    if (result != nullptr) {
+        ++job.baked;
+        job.rays += result->rays;
+    }
+    if (row.state != JobState::running)
+        drop_tasks(job);
+    changed(job);
+}
+
+void JobBook::warn(std::int64_t id, const std::string& sentence) {
+    const std::lock_guard lock(mutex_);
+    const auto found = jobs_.find(id);
+    if (found == jobs_.end())
+        return;
+    std::vector<std::string>& warnings = found->second.warnings;
+    if (warnings.size() < worker::max_warnings && std::ranges::find(warnings, sentence) == warnings.end()) {
+        warnings.push_back(sentence);
+        changed(found->second);
+    }
+}
+
+void JobBook::drop_tasks(Job& job) {
+    for (const auto& [sector, id] : job.tasks) {
+        Task& task = tasks_.at(id);
+        task.jobs.erase(job.row.id);
+        // One that is at work is forgotten when it ends.
+        if (task.jobs.empty() && !task.running)
+            erase(id);
+    }
+    job.tasks.clear();
+}
+
+void JobBook::erase(std::uint64_t id) {
+    tasks_by_key_.erase(tasks_.at(id).key);
+    tasks_.erase(id);
+}
+
+void JobBook::changed(Job& job) {
+    ++job.version;
+    changed_.notify_all();
+}
+
+JobView JobBook::view_of(const Job& job) {
+    JobView view{job.row, job.rays, 0, 0, job.version, job.warnings};
+    if (job.row.state == JobState::running && job.started && job.baked > 0) {
+        const double seconds = std::chrono::duration<double>(Clock::now() - *job.started).count();
+        view.rays_per_second = static_cast<double>(job.rays) / seconds;
+        const std::int64_t left = job.row.sectors_total - job.row.sectors_done - job.row.sectors_failed;
+        view.seconds_left = seconds / static_cast<double>(job.baked) * static_cast<double>(left);
+    }
+    return view;
+}
+
+std::optional<JobView> JobBook::view(std::int64_t id) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = jobs_.find(id);
+    return found == jobs_.end() ? std::nullopt : std::optional(view_of(found->second));
+}
+
+std::vector<JobView> JobBook::list(std::int64_t before, std::size_t count) const {
+    const std::lock_guard lock(mutex_);
+    std::vector<JobView> views;
+    auto entry = std::make_reverse_iterator(jobs_.lower_bound(before));
+    for (; entry != jobs_.rend() && views.size() < count; ++entry)
+        views.push_back(view_of(entry->second));
+    return views;
+}
+
+std::optional<JobView> JobBook::wait_for_change(std::int64_t id,
+                                                std::uint64_t seen,
+                                                std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    const auto found = jobs_.find(id);
+    if (found == jobs_.end())
+        return std::nullopt;
+    // Jobs are never removed, and a map keeps its elements in place.
+    changed_.wait_for(lock, patience, [&] { return found->second.version > seen; });
+    return view_of(found->second);
+}
+
+bool JobBook::is_running(std::int64_t id, map::SectorCoordinate sector) const {
+    const std::lock_guard lock(mutex_);
+    const auto job = jobs_.find(id);
+    if (job == jobs_.end())
+        return false;
+    const auto task = job->second.tasks.find(sector);
+    return task != job->second.tasks.end() && tasks_.at(task->second).running;
+}
+
+}  // namespace drtv::farm

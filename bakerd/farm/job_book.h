@@ -1,0 +1,133 @@
+// The jobs in memory, and the sectors that are waiting or at work for them. Knows no database: what is told
+// here has been written already. Thread-safe.
+#pragma once
+
+#include "bakerd/farm/local_executor.h"
+#include "bakerd/farm/records.h"
+
+#include <chrono>
+#include <compare>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace drtv::farm {
+
+struct JobView {
+    JobRow row;
+    std::int64_t rays = 0;  // of sectors baked since the server started
+    double rays_per_second = 0;
+    double seconds_left = 0;
+    std::uint64_t version = 0;          // grows with each change
+    std::vector<std::string> warnings;  // of records that could not be used; of the database; the first few
+};
+
+// What makes two jobs want the same bake.
+struct BakeKey {
+    Digest results_key;  // reuse::results_key
+    Digest inventory;    // of the map
+    map::SectorCoordinate sector;
+    float tolerance = 0;
+
+    auto operator<=>(const BakeKey&) const = default;
+};
+
+// A sector that has to be baked.
+struct WantedSector {
+    map::SectorCoordinate sector;
+    std::optional<ResultRow> earlier;  // of which the bake reuses what holds
+};
+
+// What has come of a sector, for each job that wants it.
+struct FinishedSector {
+    std::uint64_t id = 0;  // of the task
+    BakeKey key;
+    std::vector<std::int64_t> jobs;
+    int failed_attempts = 0;
+    Reply<worker::SectorResult> reply;
+};
+
+class JobBook {
+  public:
+    // A job that is known from now on; `wanted` are its sectors that are not there, in the order of baking.
+    // One that another job waits for is baked once.
+    void add(JobRow row, std::span<const WantedSector> wanted, std::vector<std::string> warnings = {});
+
+    // The job of a request id. While nobody has it, the caller may make one, and others wait; it must call
+    // end_request.
+    [[nodiscard]] std::optional<std::int64_t> begin_request(const std::string& request_id);
+    void end_request(const std::string& request_id);
+
+    // The next sector to bake; it is at work then.
+    [[nodiscard]] std::optional<SectorTask> next();
+
+    // Ends the work on a sector, and says for whom it was done. Jobs may go on joining until `forget`.
+    [[nodiscard]] std::optional<FinishedSector> finish(std::uint64_t id,
+                                                       int failed_attempts,
+                                                       Reply<worker::SectorResult> reply);
+    // Of those for whom it was recorded, nobody waits for the sector any more. Gives jobs that joined
+    // meanwhile; the task is forgotten where there are none.
+    [[nodiscard]] std::vector<std::int64_t> leave(std::uint64_t id, std::span<const std::int64_t> recorded);
+    // The sector waits again.
+    void put_back(std::uint64_t id);
+
+    // What was written of a job. `result` is a sector that was baked for it.
+    void update(const JobRow& row, const worker::SectorResult* result = nullptr);
+    // Shown with the job from now on.
+    void warn(std::int64_t job, const std::string& sentence);
+
+    [[nodiscard]] std::optional<JobView> view(std::int64_t id) const;
+    // Newest first, ids below `before`.
+    [[nodiscard]] std::vector<JobView> list(std::int64_t before, std::size_t count) const;
+    // Waits until the job's version is above `seen` or the time is over.
+    [[nodiscard]] std::optional<JobView> wait_for_change(std::int64_t id,
+                                                         std::uint64_t seen,
+                                                         std::chrono::milliseconds patience);
+    [[nodiscard]] bool is_running(std::int64_t job, map::SectorCoordinate sector) const;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    struct Job {
+        JobRow row;
+        std::map<map::SectorCoordinate, std::uint64_t> tasks;  // of sectors that are not there yet
+        std::int64_t rays = 0;                                 // since the server started
+        std::int64_t baked = 0;                                // likewise
+        std::optional<Clock::time_point> started;
+        std::uint64_t version = 1;
+        std::vector<std::string> warnings;
+    };
+    struct Task {
+        BakeKey key;
+        worker::BakeRequest request;
+        double earlier_seconds = 0;  // that the earlier result took from nothing; 0: there is none
+        std::set<std::int64_t> jobs;
+        bool running = false;
+        bool finished = false;
+    };
+
+    [[nodiscard]] std::uint64_t task_for(const Job& job, const WantedSector& wanted);
+    void drop_tasks(Job& job);
+    void erase(std::uint64_t id);
+    void changed(Job& job);
+    [[nodiscard]] static JobView view_of(const Job& job);
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::map<std::int64_t, Job> jobs_;                // guarded by mutex_
+    std::unordered_map<std::uint64_t, Task> tasks_;   // guarded by mutex_
+    std::map<BakeKey, std::uint64_t> tasks_by_key_;   // guarded by mutex_
+    std::deque<std::uint64_t> queue_;                 // guarded by mutex_; in the order of baking
+    std::map<std::string, std::int64_t> by_request_;  // guarded by mutex_
+    std::set<std::string> open_requests_;             // guarded by mutex_
+    std::uint64_t next_task_ = 1;                     // guarded by mutex_
+};
+
+}  // namespace drtv::farm

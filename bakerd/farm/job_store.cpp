@@ -1,0 +1,153 @@
+#include "bakerd/farm/job_store.h"
+
+#include "bakerd/farm/clock.h"
+#include "bakerd/farm/job_table.h"
+#include "bakerd/farm/result_table.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <span>
+
+namespace drtv::farm {
+namespace {
+
+// Sectors that are written in one go while others wait.
+constexpr std::size_t portion = 1000;
+
+constexpr const char* damaged_row = "its row in the database is damaged: submit the job again";
+
+JobSectorRow row_of(const PlannedSector& planned, std::int64_t job) {
+    JobSectorRow row;
+    row.job = job;
+    row.sector = planned.sector;
+    if (!planned.reused)
+        return row;
+    const worker::SectorResult& result = planned.reused->result;
+    row.state = SectorState::done;
+    row.file = result.blobs.file;
+    row.file_bytes = result.file_bytes;
+    row.probes = result.probes;
+    row.rays = result.rays;
+    row.bound = planned.bound;
+    row.warnings = result.warnings;
+    return row;
+}
+
+void count_reused(const PlannedSector& planned, JobRow& job) {
+    if (!planned.reused)
+        return;
+    ++job.sectors_done;
+    ++(planned.bound > 0 ? job.sectors_near : job.sectors_cached);
+    job.probes += planned.reused->result.probes;
+    job.largest_bound = std::max(job.largest_bound, planned.bound);
+}
+
+void write_portion(Connection& connection, std::span<const PlannedSector> sectors, JobRow& job) {
+    std::vector<JobSectorRow> rows;
+    for (const PlannedSector& planned : sectors) {
+        rows.push_back(row_of(planned, job.id));
+        count_reused(planned, job);
+        if (planned.reused)
+            use_result(connection, {planned.reused->id, job.inventory, planned.bound});
+    }
+    insert_sectors(connection, rows);
+}
+
+// What the rows say, where the job's own counts say something else, or a row does not count.
+void recount(Connection& connection, std::span<Checked<JobSectorRow>> sectors, JobRow& job) {
+    JobRow counted = job;
+    counted.sectors_total = static_cast<std::int64_t>(sectors.size());
+    counted.sectors_done = counted.sectors_failed = counted.probes = 0;
+    for (Checked<JobSectorRow>& sector : sectors) {
+        if (!sector.sound) {
+            spdlog::warn("job {}: the row of sector ({}, {}) is damaged: it is baked again",
+                         job.id,
+                         sector.row.sector.i,
+                         sector.row.sector.j);
+            sector.row = {job.id, sector.row.sector, SectorState::waiting, {}, 0, 0, 0, 0, {}, 0, ""};
+            replace_sector(connection, sector.row);
+        }
+        counted.sectors_done += sector.row.state == SectorState::done ? 1 : 0;
+        counted.sectors_failed += sector.row.state == SectorState::failed ? 1 : 0;
+        counted.probes += sector.row.state == SectorState::done ? sector.row.probes : 0;
+    }
+    job = counted;
+    end_if_complete(connection, job);
+    update_job(connection, job);
+}
+
+// Those that wait, in the order of baking.
+std::vector<WantedSector> waiting_of(std::span<const Checked<JobSectorRow>> sectors) {
+    std::vector<map::SectorCoordinate> waiting;
+    for (const Checked<JobSectorRow>& sector : sectors) {
+        if (sector.row.state == SectorState::waiting)
+            waiting.push_back(sector.row.sector);
+    }
+    std::vector<WantedSector> wanted;
+    for (const map::SectorCoordinate& sector : in_order_of_baking(std::move(waiting)))
+        wanted.push_back({sector, std::nullopt});
+    return wanted;
+}
+
+void resume(Connection& connection, JobRow job, JobBook& book) {
+    std::vector<Checked<JobSectorRow>> sectors = sectors_of_job(connection, job.id);
+    recount(connection, sectors, job);
+    spdlog::info("job {} goes on: {} of {} sectors are done", job.id, job.sectors_done, job.sectors_total);
+    book.add(job, waiting_of(sectors));
+}
+
+}  // namespace
+
+store::Result<void> write_job(Database& database, const Plan& plan, JobRow& job) {
+    job.sectors_total = static_cast<std::int64_t>(plan.sectors.size());
+    auto done = database.write([&](Connection& connection) { insert_job(connection, job); });
+    const std::span<const PlannedSector> sectors = plan.sectors;
+    for (std::size_t first = 0; done && first < sectors.size(); first += portion) {
+        const auto part = sectors.subspan(first, std::min(portion, sectors.size() - first));
+        const JobRow before = job;
+        done = database.write([&](Connection& connection) { write_portion(connection, part, job); });
+        if (!done)
+            job = before;
+    }
+    if (!done)
+        return done;
+    return database.write([&](Connection& connection) {
+        job.state = JobState::running;
+        end_if_complete(connection, job);
+        update_job(connection, job);
+        count_sectors(connection, job.sectors_cached, job.sectors_near, 0);
+    });
+}
+
+std::vector<WantedSector> wanted_by(const Plan& plan) {
+    std::vector<WantedSector> wanted;
+    for (const PlannedSector& planned : plan.sectors) {
+        if (!planned.reused)
+            wanted.push_back({planned.sector, planned.earlier});
+    }
+    return wanted;
+}
+
+store::Result<void> load_jobs(Database& database, JobBook& book) {
+    return database.write([&](Connection& connection) {
+        remove_unfinished_jobs(connection);
+        for (Checked<JobRow>& job : all_jobs(connection)) {
+            JobRow& row = job.row;
+            if (!job.sound) {
+                spdlog::warn("job {}: {}", row.id, damaged_row);
+                row.state = JobState::failed;
+                row.error = damaged_row;
+                row.ended_ms = row.ended_ms != 0 ? row.ended_ms : unix_milliseconds();
+                update_job(connection, row);
+            }
+            if (row.state == JobState::running)
+                resume(connection, std::move(row), book);
+            else
+                book.add(std::move(row), {});
+        }
+    });
+}
+
+}  // namespace drtv::farm

@@ -1,0 +1,201 @@
+#include "bakerd/farm/job_table.h"
+
+#include "bakerd/farm/clock.h"
+#include "bakerd/farm/job_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace drtv::farm {
+
+namespace {
+
+struct OverrideRow {
+    std::int64_t job = 0;
+    std::string key;
+    std::string value;
+};
+
+void columns(auto& codec, Is<OverrideRow> auto& setting) {
+    codec("job", setting.job);
+    codec("key", setting.key);
+    codec("value", setting.value);
+}
+
+template <class Row>
+void run(SQLite::Statement& statement, const Row& row) {
+    RowBinder binder(statement);
+    columns(binder, row);
+    statement.exec();
+}
+
+template <class Row>
+Checked<Row> read(SQLite::Statement& statement) {
+    Checked<Row> checked;
+    RowReader reader(statement);
+    columns(reader, checked.row);
+    checked.sound = reader.sound();
+    return checked;
+}
+
+// Where the id follows the columns and their soundness.
+Checked<JobRow> read_job(Connection& connection, SQLite::Statement& statement) {
+    Checked<JobRow> job = read<JobRow>(statement);
+    job.row.id = statement.getColumn(statement.getColumnCount() - 1).getInt64();
+    SQLite::Statement& overrides =
+        connection.statement(select_from<OverrideRow>("job_override", "WHERE job = ?"));
+    overrides.bind(1, job.row.id);
+    while (overrides.executeStep()) {
+        const Checked<OverrideRow> setting = read<OverrideRow>(overrides);
+        job.row.overrides[setting.row.key] = setting.row.value;
+        job.sound &= setting.sound;
+    }
+    return job;
+}
+
+std::vector<Checked<JobSectorRow>> read_sectors(SQLite::Statement& statement) {
+    std::vector<Checked<JobSectorRow>> rows;
+    while (statement.executeStep())
+        rows.push_back(read<JobSectorRow>(statement));
+    return rows;
+}
+
+std::string first_failure(Connection& connection, const JobRow& job) {
+    SQLite::Statement& statement = connection.statement(
+        select_from<JobSectorRow>("job_sector", "WHERE job = ? AND state = ? ORDER BY j, i LIMIT 1"));
+    statement.bind(1, job.id);
+    statement.bind(2, static_cast<std::int64_t>(SectorState::failed));
+    if (!statement.executeStep())
+        return "";
+    const JobSectorRow sector = read<JobSectorRow>(statement).row;
+    return fmt::format("{} of {} sectors failed; sector ({}, {}): {}",
+                       job.sectors_failed,
+                       job.sectors_total,
+                       sector.sector.i,
+                       sector.sector.j,
+                       sector.error);
+}
+
+}  // namespace
+
+void insert_job(Connection& connection, JobRow& job) {
+    job.state = JobState::creating;
+    run(connection.statement(insert_into<JobRow>("job")), job);
+    job.id = connection.last_id();
+    for (const auto& [key, value] : job.overrides)
+        run(connection.statement(insert_into<OverrideRow>("job_override")), OverrideRow{job.id, key, value});
+}
+
+void insert_sectors(Connection& connection, std::span<const JobSectorRow> sectors) {
+    for (const JobSectorRow& sector : sectors)
+        run(connection.statement(insert_into<JobSectorRow>("job_sector")), sector);
+}
+
+void update_job(Connection& connection, const JobRow& job) {
+    SQLite::Statement& statement = connection.statement(update<JobRow>("job", "WHERE id = :id"));
+    statement.bind(":id", job.id);
+    run(statement, job);
+}
+
+void replace_sector(Connection& connection, const JobSectorRow& sector) {
+    run(connection.statement(update<JobSectorRow>("job_sector", "WHERE job = :job AND i = :i AND j = :j")),
+        sector);
+}
+
+std::optional<JobRow> record_sector(Connection& connection, const JobSectorRow& sector) {
+    std::optional<Checked<JobRow>> found = find_job(connection, sector.job);
+    if (!found || !found->sound || found->row.state != JobState::running)
+        return std::nullopt;
+    SQLite::Statement& statement = connection.statement(
+        update<JobSectorRow>("job_sector", "WHERE job = :job AND i = :i AND j = :j AND state = :waiting"));
+    statement.bind(":waiting", static_cast<std::int64_t>(SectorState::waiting));
+    run(statement, sector);
+    if (connection.raw().getChanges() == 0)
+        return std::nullopt;
+    JobRow& job = found->row;
+    if (sector.state == SectorState::done) {
+        ++job.sectors_done;
+        job.probes += sector.probes;
+        job.largest_bound = std::max(job.largest_bound, sector.bound);
+    } else {
+        ++job.sectors_failed;
+    }
+    end_if_complete(connection, job);
+    update_job(connection, job);
+    return std::move(job);
+}
+
+void end_if_complete(Connection& connection, JobRow& job) {
+    if (job.sectors_done + job.sectors_failed < job.sectors_total)
+        return;
+    job.state = job.sectors_failed == 0 ? JobState::succeeded : JobState::failed;
+    if (job.sectors_failed > 0)
+        job.error = first_failure(connection, job);
+    job.ended_ms = unix_milliseconds();
+}
+
+std::optional<Checked<JobRow>> find_job(Connection& connection, std::int64_t id) {
+    SQLite::Statement& statement = connection.statement(select_from<JobRow>("job", "WHERE id = ?", ", id"));
+    statement.bind(1, id);
+    if (!statement.executeStep())
+        return std::nullopt;
+    return read_job(connection, statement);
+}
+
+std::vector<Checked<JobRow>> all_jobs(Connection& connection) {
+    SQLite::Statement& statement = connection.statement(select_from<JobRow>("job", "ORDER BY id", ", id"));
+    std::vector<Checked<JobRow>> jobs;
+    while (statement.executeStep())
+        jobs.push_back(read_job(connection, statement));
+    return jobs;
+}
+
+void remove_unfinished_jobs(Connection& connection) {
+    const std::string unfinished =
+        fmt::format("(SELECT id FROM job WHERE state = {})", static_cast<int>(JobState::creating));
+    for (const char* table : {"job_sector", "job_override"})
+        connection.execute(fmt::format("DELETE FROM {} WHERE job IN {}", table, unfinished));
+    connection.execute("DELETE FROM job WHERE id IN " + unfinished);
+}
+
+std::vector<Checked<JobSectorRow>> sectors_of_job(Connection& connection,
+                                                  std::int64_t job,
+                                                  std::int64_t first,
+                                                  std::int64_t count) {
+    SQLite::Statement& statement = connection.statement(
+        select_from<JobSectorRow>("job_sector", "WHERE job = ? ORDER BY j, i LIMIT ? OFFSET ?"));
+    statement.bind(1, job);
+    statement.bind(2, count);
+    statement.bind(3, first);
+    return read_sectors(statement);
+}
+
+std::optional<Checked<JobSectorRow>> sector_of_job(Connection& connection,
+                                                   std::int64_t job,
+                                                   map::SectorCoordinate sector) {
+    SQLite::Statement& statement =
+        connection.statement(select_from<JobSectorRow>("job_sector", "WHERE job = ? AND i = ? AND j = ?"));
+    statement.bind(1, job);
+    statement.bind(2, sector.i);
+    statement.bind(3, sector.j);
+    auto rows = read_sectors(statement);
+    return rows.empty() ? std::nullopt : std::optional(std::move(rows.front()));
+}
+
+std::vector<std::string> warnings_of_job(Connection& connection, std::int64_t job, std::size_t max) {
+    SQLite::Statement& statement = connection.statement(
+        "SELECT warnings FROM job_sector WHERE warnings != '' AND job = ? ORDER BY j, i LIMIT ?");
+    statement.bind(1, job);
+    statement.bind(2, static_cast<std::int64_t>(max));
+    std::vector<std::string> warnings;
+    while (statement.executeStep()) {
+        for (std::string& sentence : split(statement.getColumn(0).getString())) {
+            if (warnings.size() < max)
+                warnings.push_back(std::move(sentence));
+        }
+    }
+    return warnings;
+}
+
+}  // namespace drtv::farm

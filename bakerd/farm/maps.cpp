@@ -1,0 +1,62 @@
+#include "bakerd/farm/maps.h"
+
+#include "bakerd/farm/map_table.h"
+
+#include <fmt/format.h>
+
+namespace drtv::farm {
+
+store::Result<MapView> Maps::create(store::Manifest given) {
+    auto manifest = store::normalised(std::move(given));
+    if (!manifest)
+        return tl::unexpected(manifest.error());
+    for (const store::ManifestFile& file : manifest->files) {
+        if (!blobs_.has(file.digest))
+            return store::fail(store::ErrorCode::failed_precondition,
+                               fmt::format("the file '{}' has not been uploaded", file.path));
+    }
+    const std::string bytes = store::encode_manifest(*manifest);
+    const auto id = blobs_.put({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    if (!id)
+        return tl::unexpected(id.error());
+    const auto known = database_.read([&](Connection& connection) { return find_map(connection, *id); });
+    if (!known)
+        return tl::unexpected(known.error());
+    if (*known)
+        return MapView{*id, std::move(*manifest), **known};
+    const auto summary = executor_.inspect({*id}).get();
+    if (!summary) {
+        const worker::Failure& failure = summary.error();
+        return store::fail(
+            failure.may_retry ? store::ErrorCode::unavailable : store::ErrorCode::invalid_argument,
+            failure.sentence);
+    }
+    const auto put = database_.write([&](Connection& connection) { put_map(connection, {*id, *summary}); });
+    if (!put)
+        return tl::unexpected(put.error());
+    return MapView{*id, std::move(*manifest), *summary};
+}
+
+store::Result<worker::MapSummary> Maps::summary_of(const Digest& manifest) {
+    const auto known = database_.read([&](Connection& connection) { return find_map(connection, manifest); });
+    if (!known)
+        return tl::unexpected(known.error());
+    if (!*known)
+        return store::fail(store::ErrorCode::not_found, fmt::format("there is no map {}", to_hex(manifest)));
+    return **known;
+}
+
+store::Result<MapView> Maps::get(const Digest& id) {
+    auto summary = summary_of(id);
+    if (!summary)
+        return tl::unexpected(summary.error());
+    const auto bytes = blobs_.get(id);
+    if (!bytes)
+        return tl::unexpected(bytes.error());
+    auto manifest = store::decode_manifest({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    if (!manifest)
+        return tl::unexpected(manifest.error());
+    return MapView{id, std::move(*manifest), std::move(*summary)};
+}
+
+}  // namespace drtv::farm

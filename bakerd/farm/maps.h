@@ -1,0 +1,36 @@
+// The maps that the farm knows: manifests of files in the store, and what is in them. Thread-safe.
+#pragma once
+
+#include "bakerd/farm/database.h"
+#include "bakerd/farm/local_executor.h"
+#include "bakerd/farm/records.h"
+#include "bakerd/store/blob_store.h"
+#include "bakerd/store/error.h"
+#include "bakerd/store/manifest.h"
+
+namespace drtv::farm {
+
+struct MapView {
+    Digest id;
+    store::Manifest manifest;
+    worker::MapSummary summary;
+};
+
+class Maps {
+  public:
+    // REQUIRES: all outlive it.
+    Maps(Database& database, store::BlobStore& blobs, LocalExecutor& executor)
+        : database_(database), blobs_(blobs), executor_(executor) {}
+
+    // Has the worker import the map, unless it is known.
+    [[nodiscard]] store::Result<MapView> create(store::Manifest manifest);
+    [[nodiscard]] store::Result<MapView> get(const Digest& id);
+    [[nodiscard]] store::Result<worker::MapSummary> summary_of(const Digest& manifest);
+
+  private:
+    Database& database_;
+    store::BlobStore& blobs_;
+    LocalExecutor& executor_;
+};
+
+}  // namespace drtv::farm

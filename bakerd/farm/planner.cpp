@@ -1,0 +1,50 @@
+#include "bakerd/farm/planner.h"
+
+#include "bakerd/reuse/footprint.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+namespace drtv::farm {
+
+store::Result<PlannedJob> Planner::plan(const JobRequest& request, ResultCache::Pin& pin) {
+    const auto settings = settings_of(request);
+    if (!settings)
+        return tl::unexpected(settings.error());
+    const auto map = maps_.summary_of(request.manifest);
+    if (!map)
+        return tl::unexpected(map.error());
+    const auto sectors = sectors_of(request.region, map->sectors);
+    if (!sectors)
+        return tl::unexpected(sectors.error());
+    const CacheQuery query{reuse::results_key(*settings), map->inventory, settings->tolerance};
+    auto plan = look_up(cache_, *sectors, query, pin);
+    if (!plan)
+        return tl::unexpected(plan.error());
+    if (auto question = make_assess_request(*plan, request.manifest, *settings)) {
+        const auto answer = executor_.assess(std::move(*question)).get();
+        if (answer)
+            merge_answer(*answer, *plan);
+        else  // all that is not known for certain is baked
+            plan->warnings.push_back(
+                fmt::format("older results could not be looked at: {}", answer.error().sentence));
+    }
+    drop_damaged(blobs_, *plan);
+    for (const std::string& warning : plan->warnings)
+        spdlog::warn("{}", warning);
+    return PlannedJob{*settings, map->inventory, std::move(*plan)};
+}
+
+double seconds_to_bake(const Plan& plan, int threads) {
+    double seconds = 0;
+    for (const PlannedSector& sector : plan.sectors) {
+        if (sector.verdict == reuse::Verdict::rebake)
+            seconds += sector.seconds;
+    }
+    const std::int64_t at_once = std::clamp<std::int64_t>(plan.count(reuse::Verdict::rebake), 1, threads);
+    return seconds / static_cast<double>(at_once);
+}
+
+}  // namespace drtv::farm

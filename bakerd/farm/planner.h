@@ -1,0 +1,40 @@
+// What a job would do: its settings and sectors, and what of them is there.
+#pragma once
+
+#include "bakerd/farm/job_request.h"
+#include "bakerd/farm/local_executor.h"
+#include "bakerd/farm/maps.h"
+#include "bakerd/farm/plan.h"
+#include "bakerd/farm/result_cache.h"
+#include "bakerd/store/blob_store.h"
+#include "bakerd/store/error.h"
+
+namespace drtv::farm {
+
+struct PlannedJob {
+    bake::Settings settings;
+    Digest inventory;  // of the map
+    Plan plan;
+};
+
+// Thread-safe.
+class Planner {
+  public:
+    // REQUIRES: all outlive it.
+    Planner(Maps& maps, ResultCache& cache, store::BlobStore& blobs, LocalExecutor& executor)
+        : maps_(maps), cache_(cache), blobs_(blobs), executor_(executor) {}
+
+    // Asks the worker about results of other maps. What the plan reuses stays while `pin` lives.
+    [[nodiscard]] store::Result<PlannedJob> plan(const JobRequest& request, ResultCache::Pin& pin);
+
+  private:
+    Maps& maps_;
+    ResultCache& cache_;
+    store::BlobStore& blobs_;
+    LocalExecutor& executor_;
+};
+
+// That baking what a plan asks for will take on so many threads; 0: not known.
+[[nodiscard]] double seconds_to_bake(const Plan& plan, int threads);
+
+}  // namespace drtv::farm

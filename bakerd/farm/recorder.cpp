@@ -1,0 +1,169 @@
+#include "bakerd/farm/recorder.h"
+
+#include "bakerd/farm/clock.h"
+#include "bakerd/farm/job_table.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+namespace drtv::farm {
+namespace {
+
+JobSectorRow row_of(const FinishedSector& sector, std::int64_t job) {
+    JobSectorRow row;
+    row.job = job;
+    row.sector = sector.key.sector;
+    row.failed_attempts = sector.failed_attempts;
+    if (!sector.reply) {
+        row.state = SectorState::failed;
+        row.error = sector.reply.error().sentence;
+        return row;
+    }
+    const worker::SectorResult& result = *sector.reply;
+    row.state = SectorState::done;
+    row.file = result.blobs.file;
+    row.file_bytes = result.file_bytes;
+    row.probes = result.probes;
+    row.rays = result.rays;
+    row.bound = result.bound;
+    row.warnings = result.warnings;
+    return row;
+}
+
+void tell_end(const JobRow& job) {
+    if (job.state == JobState::succeeded)
+        spdlog::info("job {} succeeded", job.id);
+    if (job.state == JobState::failed)
+        spdlog::info("job {} failed: {}", job.id, job.error);
+}
+
+}  // namespace
+
+Recorder::Recorder(Database& database,
+                   ResultCache& cache,
+                   JobBook& book,
+                   std::function<void()> work_waits,
+                   std::chrono::milliseconds pause)
+    : database_(database),
+      cache_(cache),
+      book_(book),
+      work_waits_(std::move(work_waits)),
+      pause_(pause),
+      thread_([this] { run(); }) {}
+
+Recorder::~Recorder() {
+    stop();
+}
+
+void Recorder::record(FinishedSector sector) {
+    {
+        const std::lock_guard lock(mutex_);
+        pending_.push_back({std::move(sector), false});
+    }
+    changed_.notify_all();
+}
+
+void Recorder::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    changed_.notify_all();
+    if (thread_.joinable())
+        thread_.join();
+}
+
+void Recorder::run() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        changed_.wait(lock, [this] { return stopping_ || !pending_.empty(); });
+        if (pending_.empty())
+            return;
+        Pending pending = std::move(pending_.front());
+        pending_.pop_front();
+        lock.unlock();
+        const bool recorded = try_to_record(pending);
+        lock.lock();
+        if (recorded)
+            continue;
+        if (stopping_)
+            continue;  // after a restart the sector waits again
+        pending_.push_front(std::move(pending));
+        changed_.wait_for(lock, pause_, [this] { return stopping_; });
+    }
+}
+
+bool Recorder::try_to_record(Pending& pending) {
+    FinishedSector& sector = pending.sector;
+    const auto done = sector.reply && !pending.kept
+                          ? cache_.commit_if_there(*sector.reply, [&] { return write(pending); })
+                          : write(pending);
+    if (!done && done.error().code == store::ErrorCode::not_found) {
+        book_.put_back(sector.id);
+        work_waits_();
+        return true;
+    }
+    if (!done) {
+        refuse(pending, done.error());
+        return done.error().code == store::ErrorCode::data_loss;
+    }
+    // Jobs may have joined while this was written.
+    sector.jobs = book_.leave(sector.id, sector.jobs);
+    if (!sector.jobs.empty())
+        return try_to_record(pending);
+    if (auto kept = cache_.keep_to_limit(); !kept)
+        spdlog::error("{}", kept.error().message);
+    return true;
+}
+
+store::Result<void> Recorder::write(Pending& pending) {
+    const FinishedSector& sector = pending.sector;
+    std::vector<JobRow> jobs;
+    const auto done = database_.write([&](Connection& connection) {
+        jobs.clear();
+        if (sector.reply && !pending.kept) {
+            insert_result(connection, {0, sector.key.sector, sector.key.results_key, *sector.reply});
+            count_sectors(connection, 0, 0, 1);
+        }
+        for (const std::int64_t id : sector.jobs) {
+            if (auto job = record_sector(connection, row_of(sector, id)))
+                jobs.push_back(std::move(*job));
+        }
+    });
+    if (!done)
+        return done;
+    if (sector.reply && !std::exchange(pending.kept, true))
+        cache_.added(*sector.reply);
+    if (!sector.reply)
+        spdlog::error(
+            "sector ({}, {}): {}", sector.key.sector.i, sector.key.sector.j, sector.reply.error().sentence);
+    for (const JobRow& job : jobs) {
+        book_.update(job, sector.reply ? &*sector.reply : nullptr);
+        tell_end(job);
+    }
+    return {};
+}
+
+// A job waits for a database that is locked or full. It cannot wait for one that is damaged.
+void Recorder::refuse(const Pending& pending, const store::Error& error) {
+    spdlog::error("{}", error.message);
+    for (const std::int64_t id : pending.sector.jobs) {
+        if (error.code != store::ErrorCode::data_loss) {
+            book_.warn(id, fmt::format("a baked sector waits to be written: {}", error.message));
+            continue;
+        }
+        auto view = book_.view(id);
+        if (!view || view->row.state != JobState::running)
+            continue;
+        view->row.state = JobState::failed;
+        view->row.error = error.message;
+        view->row.ended_ms = unix_milliseconds();
+        book_.update(view->row);
+    }
+    if (error.code == store::ErrorCode::data_loss)
+        static_cast<void>(book_.leave(pending.sector.id, pending.sector.jobs));
+}
+
+}  // namespace drtv::farm

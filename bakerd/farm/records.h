@@ -1,0 +1,91 @@
+// What the farm's database keeps, as rows.
+#pragma once
+
+#include "bakerd/bake/settings.h"
+#include "bakerd/farm/job_request.h"
+#include "bakerd/map/digest.h"
+#include "bakerd/map/ground.h"
+#include "bakerd/worker/requests.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace drtv::farm {
+
+using map::Digest;
+
+// Persisted: a number never changes its meaning.
+enum class JobState : std::uint8_t {
+    running = 0,
+    succeeded = 1,
+    failed = 2,
+    cancelled = 3,
+    creating = 4,  // not all of its sectors are written yet: nobody knows of it
+};
+enum class SectorState : std::uint8_t { waiting = 0, done = 1, failed = 2 };
+
+struct JobRow {
+    std::int64_t id = 0;
+    std::string request_id;
+    Digest manifest;
+    Digest inventory;  // of the map
+    std::string preset;
+    bake::Settings settings;
+    std::optional<Region> region;
+    JobState state = JobState::running;
+    std::string error;
+    std::int64_t sectors_total = 0;
+    std::int64_t sectors_done = 0;
+    std::int64_t sectors_failed = 0;
+    std::int64_t sectors_cached = 0;  // hits
+    std::int64_t sectors_near = 0;    // near hits
+    std::int64_t probes = 0;          // of the sectors that are done
+    float largest_bound = 0;          // of near hits, and of probes that others reused
+    std::int64_t created_ms = 0;      // Unix time
+    std::int64_t ended_ms = 0;        // 0: it has not
+
+    // As asked, by key; kept apart from the row.
+    std::map<std::string, std::string> overrides;
+};
+
+// A sector of a job.
+struct JobSectorRow {
+    std::int64_t job = 0;
+    map::SectorCoordinate sector;
+    SectorState state = SectorState::waiting;
+    // When done.
+    Digest file;
+    std::int64_t file_bytes = 0;
+    std::int64_t probes = 0;
+    std::int64_t rays = 0;
+    float bound = 0;  // how far it may be off, with a result of another map (reuse/assessment.h)
+    std::vector<std::string> warnings;
+    // When failed.
+    int failed_attempts = 0;
+    std::string error;
+};
+
+// A baked sector, kept for the map of which it was baked and any other for which it still holds.
+struct ResultRow {
+    std::int64_t id = 0;
+    map::SectorCoordinate sector;
+    Digest results_key;  // reuse::results_key
+    worker::SectorResult result;
+};
+
+// That a result holds for a map: no coefficient is off by more than the bound.
+struct HoldRow {
+    std::int64_t result = 0;
+    Digest inventory;
+    float bound = 0;
+};
+
+struct MapRow {
+    Digest manifest;
+    worker::MapSummary summary;
+};
+
+}  // namespace drtv::farm

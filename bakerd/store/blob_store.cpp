@@ -1,0 +1,227 @@
+#include "bakerd/store/blob_store.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace drtv::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+tl::unexpected<Error> file_error(const std::string& what, const std::string& path) {
+    const int code = errno;
+    const ErrorCode kind =
+        code == ENOSPC || code == EDQUOT ? ErrorCode::resource_exhausted : ErrorCode::internal;
+    return fail(kind, fmt::format("cannot {} {}: {}", what, path, std::strerror(code)));
+}
+
+bool write_all(int fd, std::span<const std::uint8_t> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n = ::write(fd, bytes.data(), bytes.size());
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+    return true;
+}
+
+Result<std::vector<std::uint8_t>> read_all(const std::string& path) {
+    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    struct stat status {};
+    if (!file.is_open() || ::fstat(file.get(), &status) != 0)
+        return file_error("read", path);
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(status.st_size));
+    std::size_t at = 0;
+    while (at < bytes.size()) {
+        const ssize_t n = ::read(file.get(), bytes.data() + at, bytes.size() - at);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            return file_error("read", path);
+        if (n == 0)
+            bytes.resize(at);  // cut short meanwhile: the digest will tell
+        at += static_cast<std::size_t>(n);
+    }
+    return bytes;
+}
+
+bool sync_folder(const std::string& folder) {
+    const FileDescriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    return file.is_open() && ::fsync(file.get()) == 0;
+}
+
+// Unique among the living threads and processes of one machine; a dead one may have left the same name
+// behind.
+std::string temporary_name() {
+    static std::atomic<std::uint64_t> counter{0};
+    return fmt::format("{}.{}", ::getpid(), counter++);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& folder) {
+    for (const char* part : {"objects", "tmp", "uploads"}) {
+        std::error_code code;
+        fs::create_directories(folder + "/" + part, code);
+        if (code)
+            return fail(ErrorCode::internal,
+                        fmt::format("cannot make the folder {}/{}: {}", folder, part, code.message()));
+    }
+    return std::unique_ptr<BlobStore>(new BlobStore(folder));
+}
+
+void BlobStore::remove_leftovers() const {
+    std::error_code code;
+    for (fs::directory_iterator entry(folder_ + "/tmp", code), end; !code && entry != end;
+         entry.increment(code)) {
+        std::error_code ignored;
+        fs::remove(entry->path(), ignored);
+    }
+}
+
+std::string BlobStore::path_of(const Digest& digest) const {
+    const std::string hex = to_hex(digest);
+    return fmt::format("{}/objects/{}/{}", folder_, hex.substr(0, 2), hex);
+}
+
+std::string BlobStore::part_path(const Digest& digest) const {
+    return fmt::format("{}/uploads/{}.part", folder_, to_hex(digest));
+}
+
+bool BlobStore::has(const Digest& digest) const {
+    return ::access(path_of(digest).c_str(), R_OK) == 0;
+}
+
+Result<void> BlobStore::publish(const std::string& temporary, const Digest& digest) const {
+    const std::string path = path_of(digest), folder = path.substr(0, path.rfind('/'));
+    if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST)
+        return file_error("make the folder", folder);
+    if (::rename(temporary.c_str(), path.c_str()) != 0)
+        return file_error("write", path);
+    if (!sync_folder(folder) || !sync_folder(folder_ + "/objects"))
+        return file_error("sync", folder);
+    return {};
+}
+
+Result<Digest> BlobStore::put(std::span<const std::uint8_t> bytes) {
+    const Digest digest = map::digest_of(bytes);
+    if (has(digest))
+        return digest;
+    std::string temporary;
+    FileDescriptor file;
+    do {
+        temporary = fmt::format("{}/tmp/{}", folder_, temporary_name());
+        file.reset(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    } while (!file.is_open() && errno == EEXIST);
+    if (!file.is_open())
+        return file_error("write", temporary);
+    const bool written = write_all(file.get(), bytes) && ::fsync(file.get()) == 0;
+    if (!written || ::close(file.release()) != 0) {
+        auto error = file_error("write", temporary);
+        ::unlink(temporary.c_str());
+        return error;
+    }
+    if (auto published = publish(temporary, digest); !published) {
+        ::unlink(temporary.c_str());
+        return tl::unexpected(published.error());
+    }
+    return digest;
+}
+
+Result<std::vector<std::uint8_t>> BlobStore::get(const Digest& digest) {
+    const std::string path = path_of(digest);
+    auto bytes = read_all(path);
+    if (!bytes)
+        return fail(has(digest) ? bytes.error().code : ErrorCode::not_found, bytes.error().message);
+    if (map::digest_of(*bytes) != digest) {
+        ::unlink(path.c_str());
+        return fail(ErrorCode::data_loss,
+                    fmt::format("the stored blob {} is damaged; it was removed", to_hex(digest)));
+    }
+    return bytes;
+}
+
+void BlobStore::remove(const Digest& digest) const {
+    ::unlink(path_of(digest).c_str());
+}
+
+std::int64_t BlobStore::received_bytes(const Digest& digest) const {
+    struct stat status {};
+    return ::stat(part_path(digest).c_str(), &status) == 0 ? static_cast<std::int64_t>(status.st_size) : 0;
+}
+
+Result<BlobStore::Upload> BlobStore::upload(const Digest& digest, std::int64_t size, std::int64_t offset) {
+    const std::lock_guard lock(mutex_);
+    if (uploading_.contains(digest))
+        return fail(ErrorCode::aborted,
+                    fmt::format("the blob {} is being uploaded by another client", to_hex(digest)));
+    const std::int64_t received = received_bytes(digest);
+    if (offset != 0 && offset != received)
+        return fail(
+            ErrorCode::aborted,
+            fmt::format("the upload of {} must go on at {}, not {}", to_hex(digest), received, offset));
+    const std::string path = part_path(digest);
+    const int start_anew = offset == 0 ? O_TRUNC : 0;
+    FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | start_anew, 0666));
+    if (!file.is_open())
+        return file_error("write", path);
+    uploading_.insert(digest);
+    return Upload(*this, digest, size, std::move(file), offset);
+}
+
+BlobStore::Upload::Upload(Upload&& other) noexcept
+    : store_(std::exchange(other.store_, nullptr)),
+      digest_(other.digest_),
+      size_(other.size_),
+      received_(other.received_),
+      file_(std::move(other.file_)) {}
+
+BlobStore::Upload::~Upload() {
+    if (store_ == nullptr)
+        return;
+    file_.reset(-1);
+    const std::lock_guard lock(store_->mutex_);
+    store_->uploading_.erase(digest_);
+}
+
+Result<void> BlobStore::Upload::append(std::span<const std::uint8_t> bytes) {
+    if (static_cast<std::int64_t>(bytes.size()) > size_ - received_) {
+        ::unlink(store_->part_path(digest_).c_str());
+        return fail(ErrorCode::invalid_argument,
+                    fmt::format("the upload of {} is longer than its {} bytes", to_hex(digest_), size_));
+    }
+    if (!write_all(file_.get(), bytes))
+        return file_error("write", store_->part_path(digest_));
+    received_ += static_cast<std::int64_t>(bytes.size());
+    return {};
+}
+
+Result<void> BlobStore::Upload::finish() {
+    const std::string part = store_->part_path(digest_);
+    if (received_ != size_)
+        return fail(
+            ErrorCode::invalid_argument,
+            fmt::format("the upload of {} ended after {} of {} bytes", to_hex(digest_), received_, size_));
+    if (::fsync(file_.get()) != 0 || ::close(file_.release()) != 0)
+        return file_error("write", part);
+    const auto bytes = read_all(part);
+    if (!bytes)
+        return tl::unexpected(bytes.error());
+    if (map::digest_of(*bytes) != digest_) {
+        ::unlink(part.c_str());
+        return fail(ErrorCode::invalid_argument,
+                    fmt::format("the uploaded bytes do not have the digest {}", to_hex(digest_)));
+    }
+    return store_->publish(part, digest_);
+}
+
+}  // namespace drtv::store

@@ -1,0 +1,114 @@
+// What the daemon asks its workers, and what they answer.
+#pragma once
+
+#include "bakerd/bake/settings.h"
+#include "bakerd/map/digest.h"
+#include "bakerd/map/ground.h"
+#include "bakerd/map/map.h"
+#include "bakerd/reuse/verdict.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace drtv::worker {
+
+using map::Digest;
+
+// A baked sector's blobs.
+struct ResultBlobs {
+    Digest file;
+    Digest footprint;  // what the file depends on (reuse/footprint.h)
+    Digest inventory;  // the map of which it was baked (reuse/inventory.h)
+};
+
+// Import a map and say what is in it.
+struct InspectRequest {
+    Digest manifest;
+};
+
+// Bake one sector into the store.
+struct BakeRequest {
+    Digest manifest;
+    map::SectorCoordinate sector;
+    bake::Settings settings;
+    std::optional<ResultBlobs> earlier;  // of another map, with these settings; what holds of it is reused
+};
+
+// Say which older results of sectors hold for a map.
+struct AssessRequest {
+    struct Sector {
+        map::SectorCoordinate sector;
+        std::vector<ResultBlobs> candidates;  // the likeliest first
+    };
+    Digest manifest;
+    bake::Settings settings;
+    std::vector<Sector> sectors;
+};
+
+// Answer to InspectRequest.
+struct MapSummary {
+    Digest content;
+    Digest inventory;                            // a blob
+    std::vector<map::SectorCoordinate> sectors;  // with ground, by (j, i)
+    std::int64_t object_count = 0;
+    std::int64_t triangle_count = 0;
+    std::vector<std::string> warnings;  // one sentence each
+};
+
+// Answer to BakeRequest.
+struct SectorResult {
+    ResultBlobs blobs;
+    std::int64_t file_bytes = 0;
+    std::int64_t footprint_bytes = 0;
+    std::int64_t probes = 0;
+    std::int64_t rays = 0;
+    std::vector<std::string> warnings;  // one sentence each
+    double seconds = 0;                 // that a bake from nothing takes, beside other sectors
+    float bound =
+        0;  // on how far it is off, where probes of another map's result were reused (reuse/assessment.h)
+};
+
+// Answer to AssessRequest.
+struct Assessments {
+    struct Sector {
+        reuse::Verdict verdict = reuse::Verdict::rebake;
+        std::size_t candidate = 0;  // of a rebake the one with the most to reuse, when its share is below 1
+        float bound = 0;
+        float share = 1;     // of its probes, that a rebake has to bake
+        std::string reason;  // one sentence; empty of a hit
+    };
+    // Something that is not as it was in the map of a result, with where it is and was.
+    struct Change {
+        std::string what;
+        map::Bounds bounds;
+    };
+    std::vector<Sector> sectors;        // in the order of the request
+    std::vector<Change> changes;        // the first of them, without those that stand nowhere
+    std::vector<std::string> warnings;  // of records that cannot be used, one sentence each
+};
+
+// Of maps and jobs no more than the first few warnings are kept.
+inline constexpr std::size_t max_warnings = 20;
+
+// Answer to any request that could not be done.
+struct Failure {
+    std::string sentence;
+    bool may_retry = false;  // a full disk may be better next time, a bad map will not
+};
+
+// Sent and answered under a number, in any order.
+struct Request {
+    std::uint64_t id = 0;
+    std::variant<InspectRequest, BakeRequest, AssessRequest> what;
+};
+
+struct Answer {
+    std::uint64_t id = 0;
+    std::variant<MapSummary, SectorResult, Assessments, Failure> what;
+};
+
+}  // namespace drtv::worker

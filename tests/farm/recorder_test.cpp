@@ -1,0 +1,174 @@
+// What the database did not take is not done.
+#include "bakerd/farm/recorder.h"
+#include "bakerd/farm/job_store.h"
+#include "tests/farm/books.h"
+
+#include <atomic>
+#include <thread>
+
+namespace drtv::farm {
+namespace {
+
+using namespace std::chrono_literals;
+
+class RecorderTest : public BooksTest {
+  protected:
+    RecorderTest() : cache(*database, *blobs, INT64_MAX) { start(); }
+    ~RecorderTest() override { recorder->stop(); }
+
+    void start() {
+        recorder = std::make_unique<Recorder>(
+            *database, cache, book, [this] { ++woken; }, 20ms);
+    }
+
+    // In the database and in the book.
+    JobRow add(const std::vector<map::SectorCoordinate>& sectors) {
+        JobRow job = add_job(sectors);
+        std::vector<WantedSector> wanted;
+        for (const map::SectorCoordinate& sector : sectors)
+            wanted.push_back({sector, std::nullopt});
+        book.add(job, wanted);
+        return job;
+    }
+    // The next sector of the queue as if it had been baked.
+    FinishedSector bake_next() {
+        const SectorTask task = book.next().value();
+        return book.finish(task.id, 0, result("file " + std::to_string(task.id))).value();
+    }
+    JobView wait(std::int64_t id, const std::function<bool(const JobView&)>& enough) {
+        JobView view = book.view(id).value();
+        for (int n = 0; n < 1000 && !enough(view); ++n)
+            view = book.wait_for_change(id, view.version, 20ms).value();
+        EXPECT_TRUE(enough(view)) << view.row.sectors_done << " done, " << view.row.error;
+        return view;
+    }
+    static bool has_ended(const JobView& view) { return view.row.state != JobState::running; }
+
+    ResultCache cache;
+    JobBook book;
+    std::atomic<int> woken = 0;
+    std::unique_ptr<Recorder> recorder;
+};
+
+TEST_F(RecorderTest, WritesTheSectorTheJobAndTheResult) {
+    const JobRow job = add({{0, 0}, {1, 0}});
+    recorder->record(bake_next());
+    wait(job.id, [](const JobView& view) { return view.row.sectors_done == 1; });
+    recorder->record(bake_next());
+    EXPECT_EQ(wait(job.id, has_ended).row.state, JobState::succeeded);
+    EXPECT_EQ(this->job(job.id).row.state, JobState::succeeded);
+    EXPECT_EQ(sector(job.id, {0, 0}).row.file, digest_of("file 1"));
+    EXPECT_EQ(cache.counts()->results, 2);
+    EXPECT_EQ(book.view(job.id)->rays, 2LL << 40);
+}
+
+// Another program holds the file for longer than anybody is ready to wait.
+TEST_F(RecorderTest, WhileTheDatabaseIsLockedNothingIsDoneAndNothingIsLost) {
+    const JobRow job = add({{0, 0}, {1, 0}, {2, 0}});
+    SQLite::Database other(path, SQLite::OPEN_READWRITE);
+    other.exec("BEGIN EXCLUSIVE");
+    for (int n = 0; n < 3; ++n)
+        recorder->record(bake_next());
+    const JobView waiting = wait(job.id, [](const JobView& view) { return !view.warnings.empty(); });
+    EXPECT_NE(waiting.warnings[0].find("waits to be written"), std::string::npos) << waiting.warnings[0];
+    std::this_thread::sleep_for(200ms);
+    EXPECT_EQ(book.view(job.id)->row.sectors_done, 0);
+    EXPECT_EQ(book.view(job.id)->row.state, JobState::running);
+    other.exec("ROLLBACK");
+    EXPECT_EQ(wait(job.id, has_ended).row.state, JobState::succeeded);
+    EXPECT_EQ(this->job(job.id).row.sectors_done, 3);
+    for (int n = 0; n < 3; ++n)
+        EXPECT_TRUE(blobs->has(sector(job.id, {n, 0}).row.file));
+}
+
+TEST_F(RecorderTest, WhatIsRefusedUntilTheEndWaitsAgainAfterARestart) {
+    const JobRow job = add({{0, 0}, {1, 0}});
+    recorder->record(bake_next());
+    wait(job.id, [](const JobView& view) { return view.row.sectors_done == 1; });
+    SQLite::Database other(path, SQLite::OPEN_READWRITE);
+    other.exec("BEGIN EXCLUSIVE");
+    recorder->record(bake_next());
+    recorder->stop();
+    other.exec("ROLLBACK");
+    JobBook after;
+    ASSERT_TRUE(load_jobs(*database, after));
+    EXPECT_EQ(after.view(job.id)->row.state, JobState::running);
+    EXPECT_EQ(after.view(job.id)->row.sectors_done, 1);
+    EXPECT_EQ(after.next()->request.sector, (map::SectorCoordinate{1, 0}));
+}
+
+TEST_F(RecorderTest, AJobThatJoinsWhileASectorIsAtWorkGetsItToo) {
+    const JobRow one = add({{0, 0}});
+    FinishedSector finished = bake_next();
+    const JobRow two = add({{0, 0}});
+    EXPECT_FALSE(book.next()) << "it is at work";
+    recorder->record(std::move(finished));
+    EXPECT_EQ(wait(one.id, has_ended).row.state, JobState::succeeded);
+    EXPECT_EQ(wait(two.id, has_ended).row.state, JobState::succeeded);
+    EXPECT_EQ(sector(two.id, {0, 0}).row.file, sector(one.id, {0, 0}).row.file);
+    EXPECT_EQ(cache.counts()->results, 1);
+}
+
+TEST_F(RecorderTest, TheResultOfACancelledJobIsKeptAndNotCounted) {
+    JobRow job = add({{0, 0}, {1, 0}});
+    FinishedSector finished = bake_next();
+    job.state = JobState::cancelled;
+    write([&](Connection& connection) { update_job(connection, job); });
+    book.update(job);
+    recorder->record(std::move(finished));
+    recorder->stop();
+    EXPECT_EQ(book.view(job.id)->row.sectors_done, 0);
+    EXPECT_EQ(sector(job.id, {0, 0}).row.state, SectorState::waiting);
+    EXPECT_EQ(cache.counts()->results, 1);
+    EXPECT_FALSE(book.next()) << "nobody wants the other one";
+}
+
+TEST_F(RecorderTest, AFileThatLeftTheStoreBeforeItWasRecordedIsBakedAgain) {
+    const JobRow job = add({{0, 0}});
+    FinishedSector finished = bake_next();
+    blobs->remove(finished.reply->blobs.file);
+    recorder->record(std::move(finished));
+    for (int n = 0; n < 500 && woken == 0; ++n)
+        std::this_thread::sleep_for(10ms);
+    EXPECT_EQ(book.view(job.id)->row.sectors_done, 0);
+    recorder->record(bake_next());
+    EXPECT_EQ(wait(job.id, has_ended).row.state, JobState::succeeded);
+}
+
+TEST_F(RecorderTest, AFailureIsTheSectors) {
+    const JobRow job = add({{0, 0}});
+    const SectorTask task = book.next().value();
+    recorder->record(book.finish(task.id, 3, tl::unexpected(worker::Failure{"it burnt", false})).value());
+    EXPECT_EQ(wait(job.id, has_ended).row.error, "1 of 1 sectors failed; sector (0, 0): it burnt");
+    EXPECT_EQ(sector(job.id, {0, 0}).row.failed_attempts, 3);
+    EXPECT_EQ(cache.counts()->results, 0);
+}
+
+// What the database says is checked.
+TEST_F(RecorderTest, ARestartBakesSectorsOfDamagedRowsAgain) {
+    const JobRow job = add({{0, 0}, {1, 0}, {2, 0}});
+    for (int n = 0; n < 2; ++n)
+        recorder->record(bake_next());
+    wait(job.id, [](const JobView& view) { return view.row.sectors_done == 2; });
+    recorder->stop();
+    change("UPDATE job_sector SET file = '" + to_hex(digest_of("wrong")) + "' WHERE i = 1");
+    JobBook after;
+    ASSERT_TRUE(load_jobs(*database, after));
+    EXPECT_EQ(after.view(job.id)->row.sectors_done, 1);
+    EXPECT_EQ(after.next()->request.sector, (map::SectorCoordinate{1, 0}));
+    EXPECT_EQ(after.next()->request.sector, (map::SectorCoordinate{2, 0}));
+    EXPECT_FALSE(after.next());
+}
+
+TEST_F(RecorderTest, ARestartFailsAJobWhoseSettingsAreDamaged) {
+    const JobRow job = add({{0, 0}});
+    change("UPDATE job SET bounces = 1");
+    JobBook after;
+    ASSERT_TRUE(load_jobs(*database, after));
+    EXPECT_EQ(after.view(job.id)->row.state, JobState::failed);
+    EXPECT_NE(after.view(job.id)->row.error.find("damaged"), std::string::npos);
+    EXPECT_FALSE(after.next());
+}
+
+}  // namespace
+}  // namespace drtv::farm
