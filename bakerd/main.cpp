@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
 
     CLI::App app{"bakerd bakes light probes: it takes maps and jobs over gRPC and keeps the sector files."};
     app.require_subcommand(1);
-    app.set_version_flag("--version", "bakerd 0.1.0");
+    app.set_version_flag("--version", "bakerd " DRTV_VERSION);
 
     ServeOptions serve_options;
     CLI::App* serve_command = app.add_subcommand("serve", "Serve clients until SIGTERM or ctrl-C");

@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
     ::setenv("GRPC_VERBOSITY", "NONE", 0);
     CLI::App app{"bake submits maps to bakerd and pulls the baked sector files."};
     app.require_subcommand(1);
-    app.set_version_flag("--version", "bake 0.1.0");
+    app.set_version_flag("--version", "bake " DRTV_VERSION);
     Arguments arguments;
     add_connection_options(app, arguments.connection);
     add_map_commands(app, arguments);

@@ -40,11 +40,6 @@ std::vector<Position> manual_positions(std::span<const glm::dvec3> manual) {
     return positions;
 }
 
-// The sector that a coordinate in units lies in.
-std::int32_t sector_of(std::int32_t units) {
-    return units >= 0 ? units / sector_side : -((-units + sector_side - 1) / sector_side);
-}
-
 class Placer {
   public:
     Placer(const Input& input, const Surroundings& surroundings, const Settings& settings)

@@ -26,4 +26,10 @@ namespace drtv::placement {
     return x * x + y * y + z * z;
 }
 
+// The sector that a coordinate in units lies in, along its axis.
+[[nodiscard]] inline std::int32_t sector_of(std::int32_t units) {
+    constexpr std::int32_t side = sector_size_m * units_per_m;
+    return units >= 0 ? units / side : -((-units + side - 1) / side);
+}
+
 }  // namespace drtv::placement

@@ -16,6 +16,7 @@ esac
 
 "$source_dir/deploy/install_packages.sh" --tests
 cd "$source_dir"
+tests/style.py
 cmake --preset "$preset"
 cmake --build --preset "$preset"
 ctest --preset "$preset" --parallel "$(nproc)"

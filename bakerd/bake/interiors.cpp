@@ -1,5 +1,7 @@
 #include "bakerd/bake/interiors.h"
 
+#include "placement/units.h"
+
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -29,9 +31,7 @@ Position position_of(const glm::dvec3& point) {
 }
 
 map::SectorCoordinate sector_of(const Position& position) {
-    constexpr std::int32_t side = sector_size_m * position_units_per_m;
-    const auto floor_divide = [](std::int32_t u) { return u >= 0 ? u / side : -((-u + side - 1) / side); };
-    return {floor_divide(position.x), floor_divide(position.y)};
+    return {placement::sector_of(position.x), placement::sector_of(position.y)};
 }
 
 const map::ManualProbe* probe_of(const map::Map& map,

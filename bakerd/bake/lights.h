@@ -1,12 +1,12 @@
 // Static lights: what the map itself shines with, in radiometric units, and how to draw from them.
 #pragma once
 
+#include "bakerd/map/colour.h"
 #include "bakerd/map/map.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,10 +19,7 @@ namespace drtv::bake {
 // Blender's exporter has it): candela become W/sr, lux W/m2, nits W/(sr m2), divided by it.
 inline constexpr float lumens_per_watt = 683;
 
-// Its largest channel.
-[[nodiscard]] inline float brightest(const glm::vec3& colour) {
-    return std::max({colour.x, colour.y, colour.z});
-}
+using map::brightest;
 
 // Nearer to a point light than this, its inverse square stays as it is: it stands in no surface.
 inline constexpr float least_light_distance_m = 0.01f;

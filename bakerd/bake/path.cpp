@@ -1,5 +1,7 @@
 #include "bakerd/bake/path.h"
 
+#include "bakerd/map/colour.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -64,8 +66,8 @@ float exit_distance(const glm::vec3& origin,
 }
 
 float transmitted_share(const trace::Surface& surface) {
-    const float back = std::max({surface.albedo.x, surface.albedo.y, surface.albedo.z});
-    const float through = std::max({surface.transmitted.x, surface.transmitted.y, surface.transmitted.z});
+    const float back = map::brightest(surface.albedo);
+    const float through = map::brightest(surface.transmitted);
     return through > 0 ? through / (back + through) : 0;
 }
 

@@ -1,5 +1,7 @@
 #include "bakerd/bake/sampling.h"
 
+#include "bakerd/map/mixed_bits.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -57,20 +59,13 @@ Directions direction_numbers(std::uint32_t dimension) {
     return v;
 }
 
-// SplitMix64's finaliser (Steele, Lea, Flood 2014).
-std::uint64_t mixed(std::uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-    return x ^ (x >> 31);
-}
-
 // Nested uniform scrambling: each bit is flipped by a coin that depends on all bits before it.
 std::uint32_t owen_scramble(std::uint32_t word, std::uint32_t dimension) {
     std::uint32_t flips = 0;
     for (std::uint32_t bit = 0; bit < 32; ++bit) {
         const std::uint64_t prefix = bit == 0 ? 0 : word >> (32 - bit);
-        const std::uint64_t coin =
-            mixed((std::uint64_t{dimension} << 38 | std::uint64_t{bit} << 32 | prefix) + 0x9E3779B97F4A7C15u);
+        const std::uint64_t coin = map::mixed_bits(
+            (std::uint64_t{dimension} << 38 | std::uint64_t{bit} << 32 | prefix) + 0x9E3779B97F4A7C15u);
         flips |= static_cast<std::uint32_t>(coin >> 63) << (31 - bit);
     }
     return word ^ flips;
@@ -141,20 +136,21 @@ std::uint64_t SampleTable::place_of(std::uint32_t n) const {
 }
 
 std::array<std::uint32_t, max_sample_dimensions> digital_shift(const glm::ivec3& p) {
-    std::uint64_t state = mixed(static_cast<std::uint32_t>(p.x) + 0x9E3779B97F4A7C15u);
-    state = mixed(state ^ static_cast<std::uint32_t>(p.y));
-    state = mixed(state ^ static_cast<std::uint32_t>(p.z));
+    std::uint64_t state = map::mixed_bits(static_cast<std::uint32_t>(p.x) + 0x9E3779B97F4A7C15u);
+    state = map::mixed_bits(state ^ static_cast<std::uint32_t>(p.y));
+    state = map::mixed_bits(state ^ static_cast<std::uint32_t>(p.z));
     std::array<std::uint32_t, max_sample_dimensions> shift{};
     for (std::uint32_t& word : shift) {
         state += 0x9E3779B97F4A7C15u;
-        word = static_cast<std::uint32_t>(mixed(state) >> 32);
+        word = static_cast<std::uint32_t>(map::mixed_bits(state) >> 32);
     }
     return shift;
 }
 
 std::uint32_t hashed(std::uint32_t key, std::uint32_t n, std::uint32_t dimension) {
     return static_cast<std::uint32_t>(
-        mixed(mixed((std::uint64_t{key} << 32 | n) + 0x9E3779B97F4A7C15u) ^ dimension) >> 32);
+        map::mixed_bits(map::mixed_bits((std::uint64_t{key} << 32 | n) + 0x9E3779B97F4A7C15u) ^ dimension) >>
+        32);
 }
 
 glm::vec3 uniform_sphere(glm::vec2 u) {

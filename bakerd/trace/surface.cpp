@@ -1,5 +1,7 @@
 #include "bakerd/trace/surface.h"
 
+#include "bakerd/map/colour.h"
+#include "bakerd/map/mixed_bits.h"
 #include "bakerd/map/texture.h"
 
 #include <glm/common.hpp>
@@ -68,18 +70,12 @@ bool is_leaf(const map::Material& material, map::Role role) {
            (material.double_sided || material.alpha_mode != map::AlphaMode::opaque);
 }
 
-float brightest(const glm::vec3& colour) {
-    return std::max({colour.x, colour.y, colour.z});
-}
-
-// In [0, 1), from the point's bits (finaliser of SplitMix64).
+// In [0, 1), from the point's bits.
 float coin_at(std::uint32_t triangle, float u, float v) {
-    std::uint64_t x =
-        (std::uint64_t{std::bit_cast<std::uint32_t>(u)} << 32 | std::bit_cast<std::uint32_t>(v)) +
-        0x9E3779B97F4A7C15u * (std::uint64_t{triangle} + 1);
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-    return static_cast<float>((x ^ (x >> 31)) >> 40) * 0x1p-24f;
+    const std::uint64_t place =
+        std::uint64_t{std::bit_cast<std::uint32_t>(u)} << 32 | std::bit_cast<std::uint32_t>(v);
+    const std::uint64_t bits = map::mixed_bits(place + 0x9E3779B97F4A7C15u * (std::uint64_t{triangle} + 1));
+    return static_cast<float>(bits >> 40) * 0x1p-24f;
 }
 
 }  // namespace
@@ -157,10 +153,10 @@ float most_scattered(const map::Map& map) {
         for (const map::Primitive& primitive : map.meshes[object.mesh].primitives) {
             const map::Material& material = map.materials[primitive.material];
             const auto scattered = [&](const glm::vec3& colour) {
-                const float albedo = std::min(brightest(colour), map::max_albedo);
+                const float albedo = std::min(map::brightest(colour), map::max_albedo);
                 if (material.transmission > 0)
                     return albedo * (1 - material.transmission) +
-                           std::min(brightest(material.transmission_colour) * material.transmission,
+                           std::min(map::brightest(material.transmission_colour) * material.transmission,
                                     map::max_albedo);
                 return is_leaf(material, object.role)
                            ? std::min(albedo * (1 + leaf_transmission), map::max_albedo)
