@@ -8,6 +8,7 @@
 namespace drtv::farm {
 
 void JobBook::add(JobRow row, std::span<const WantedSector> wanted, std::vector<std::string> warnings) {
+    BakeKey key{reuse::results_key(row.settings), row.inventory, {}, 0};
     const std::lock_guard lock(mutex_);
     Job& job = jobs_[row.id];
     job.row = std::move(row);
@@ -15,15 +16,15 @@ void JobBook::add(JobRow row, std::span<const WantedSector> wanted, std::vector<
     if (!job.row.request_id.empty())
         by_request_[job.row.request_id] = job.row.id;
     for (const WantedSector& sector : wanted) {
-        const std::uint64_t id = task_for(job, sector);
+        key.sector = sector.sector;
+        const std::uint64_t id = task_for(job, sector, key);
         tasks_.at(id).jobs.insert(job.row.id);
         job.tasks[sector.sector] = id;
     }
 }
 
 // One that asks for the exact result serves as well: better than to bake the sector twice.
-std::uint64_t JobBook::task_for(const Job& job, const WantedSector& wanted) {
-    BakeKey key{reuse::results_key(job.row.settings), job.row.inventory, wanted.sector, 0};
+std::uint64_t JobBook::task_for(const Job& job, const WantedSector& wanted, BakeKey key) {
     for (const float tolerance : {0.0f, job.row.settings.tolerance}) {
         key.tolerance = tolerance;
         if (const auto known = tasks_by_key_.find(key); known != tasks_by_key_.end())
@@ -108,7 +109,7 @@ std::vector<std::int64_t> JobBook::leave(std::uint64_t id, std::span<const std::
         jobs_.at(job_id).tasks.erase(task.key.sector);
     }
     if (task.jobs.empty())
-        erase(id);
+        forget(id);
     return {task.jobs.begin(), task.jobs.end()};
 }
 
@@ -120,7 +121,7 @@ void JobBook::put_back(std::uint64_t id) {
     Task& task = found->second;
     task.running = task.finished = false;
     if (task.jobs.empty())
-        erase(id);
+        forget(id);
     else
         queue_.push_back(id);
 }
@@ -156,12 +157,12 @@ void JobBook::drop_tasks(Job& job) {
         task.jobs.erase(job.row.id);
         // One that is at work is forgotten when it ends.
         if (task.jobs.empty() && !task.running)
-            erase(id);
+            forget(id);
     }
     job.tasks.clear();
 }
 
-void JobBook::erase(std::uint64_t id) {
+void JobBook::forget(std::uint64_t id) {
     tasks_by_key_.erase(tasks_.at(id).key);
     tasks_.erase(id);
 }

@@ -69,7 +69,7 @@ class JobBook {
     // The next sector to bake; it is at work then.
     [[nodiscard]] std::optional<SectorTask> next();
 
-    // Ends the work on a sector, and says for whom it was done. Jobs may go on joining until `forget`.
+    // Ends the work on a sector, and says for whom it was done. Jobs may go on joining until all have left.
     [[nodiscard]] std::optional<FinishedSector> finish(std::uint64_t id,
                                                        int failed_attempts,
                                                        Reply<worker::SectorResult> reply);
@@ -113,9 +113,10 @@ class JobBook {
         bool finished = false;
     };
 
-    [[nodiscard]] std::uint64_t task_for(const Job& job, const WantedSector& wanted);
+    // `key` is the sector's, but for its tolerance.
+    [[nodiscard]] std::uint64_t task_for(const Job& job, const WantedSector& wanted, BakeKey key);
     void drop_tasks(Job& job);
-    void erase(std::uint64_t id);
+    void forget(std::uint64_t id);
     void changed(Job& job);
     [[nodiscard]] static JobView view_of(const Job& job);
 

@@ -24,14 +24,14 @@ void columns(auto& codec, Is<OverrideRow> auto& setting) {
 }
 
 template <class Row>
-void run(SQLite::Statement& statement, const Row& row) {
+void write_row(SQLite::Statement& statement, const Row& row) {
     RowBinder binder(statement);
     columns(binder, row);
     statement.exec();
 }
 
 template <class Row>
-Checked<Row> read(SQLite::Statement& statement) {
+Checked<Row> read_row(SQLite::Statement& statement) {
     Checked<Row> checked;
     RowReader reader(statement);
     columns(reader, checked.row);
@@ -41,13 +41,13 @@ Checked<Row> read(SQLite::Statement& statement) {
 
 // Where the id follows the columns and their soundness.
 Checked<JobRow> read_job(Connection& connection, SQLite::Statement& statement) {
-    Checked<JobRow> job = read<JobRow>(statement);
+    Checked<JobRow> job = read_row<JobRow>(statement);
     job.row.id = statement.getColumn(statement.getColumnCount() - 1).getInt64();
     SQLite::Statement& overrides =
         connection.statement(select_from<OverrideRow>("job_override", "WHERE job = ?"));
     overrides.bind(1, job.row.id);
     while (overrides.executeStep()) {
-        const Checked<OverrideRow> setting = read<OverrideRow>(overrides);
+        const Checked<OverrideRow> setting = read_row<OverrideRow>(overrides);
         job.row.overrides[setting.row.key] = setting.row.value;
         job.sound &= setting.sound;
     }
@@ -57,7 +57,7 @@ Checked<JobRow> read_job(Connection& connection, SQLite::Statement& statement) {
 std::vector<Checked<JobSectorRow>> read_sectors(SQLite::Statement& statement) {
     std::vector<Checked<JobSectorRow>> rows;
     while (statement.executeStep())
-        rows.push_back(read<JobSectorRow>(statement));
+        rows.push_back(read_row<JobSectorRow>(statement));
     return rows;
 }
 
@@ -68,7 +68,7 @@ std::string first_failure(Connection& connection, const JobRow& job) {
     statement.bind(2, static_cast<std::int64_t>(SectorState::failed));
     if (!statement.executeStep())
         return "";
-    const JobSectorRow sector = read<JobSectorRow>(statement).row;
+    const JobSectorRow sector = read_row<JobSectorRow>(statement).row;
     return fmt::format("{} of {} sectors failed; sector ({}, {}): {}",
                        job.sectors_failed,
                        job.sectors_total,
@@ -81,25 +81,27 @@ std::string first_failure(Connection& connection, const JobRow& job) {
 
 void insert_job(Connection& connection, JobRow& job) {
     job.state = JobState::creating;
-    run(connection.statement(insert_into<JobRow>("job")), job);
+    write_row(connection.statement(insert_into<JobRow>("job")), job);
     job.id = connection.last_id();
     for (const auto& [key, value] : job.overrides)
-        run(connection.statement(insert_into<OverrideRow>("job_override")), OverrideRow{job.id, key, value});
+        write_row(connection.statement(insert_into<OverrideRow>("job_override")),
+                  OverrideRow{job.id, key, value});
 }
 
 void insert_sectors(Connection& connection, std::span<const JobSectorRow> sectors) {
     for (const JobSectorRow& sector : sectors)
-        run(connection.statement(insert_into<JobSectorRow>("job_sector")), sector);
+        write_row(connection.statement(insert_into<JobSectorRow>("job_sector")), sector);
 }
 
 void update_job(Connection& connection, const JobRow& job) {
     SQLite::Statement& statement = connection.statement(update<JobRow>("job", "WHERE id = :id"));
     statement.bind(":id", job.id);
-    run(statement, job);
+    write_row(statement, job);
 }
 
 void replace_sector(Connection& connection, const JobSectorRow& sector) {
-    run(connection.statement(update<JobSectorRow>("job_sector", "WHERE job = :job AND i = :i AND j = :j")),
+    write_row(
+        connection.statement(update<JobSectorRow>("job_sector", "WHERE job = :job AND i = :i AND j = :j")),
         sector);
 }
 
@@ -110,7 +112,7 @@ std::optional<JobRow> record_sector(Connection& connection, const JobSectorRow& 
     SQLite::Statement& statement = connection.statement(
         update<JobSectorRow>("job_sector", "WHERE job = :job AND i = :i AND j = :j AND state = :waiting"));
     statement.bind(":waiting", static_cast<std::int64_t>(SectorState::waiting));
-    run(statement, sector);
+    write_row(statement, sector);
     if (connection.raw().getChanges() == 0)
         return std::nullopt;
     JobRow& job = found->row;

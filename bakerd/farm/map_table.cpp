@@ -39,7 +39,7 @@ void columns(auto& codec, Is<SectorColumns> auto& sector) {
 }
 
 template <class Row>
-void insert(Connection& connection, const std::string& table, const Row& row) {
+void insert_row(Connection& connection, const std::string& table, const Row& row) {
     SQLite::Statement& statement = connection.statement(insert_into<Row>(table));
     RowBinder binder(statement);
     columns(binder, row);
@@ -63,10 +63,10 @@ void put_map(Connection& connection, const MapRow& map) {
                       summary.object_count,
                       summary.triangle_count,
                       summary.warnings};
-    insert(connection, "map", row);
+    insert_row(connection, "map", row);
     for (std::size_t n = 0; n < summary.sectors.size(); ++n) {
         const SectorColumns sector{map.manifest, static_cast<std::int64_t>(n), summary.sectors[n]};
-        insert(connection, "map_sector", sector);
+        insert_row(connection, "map_sector", sector);
     }
 }
 

@@ -31,7 +31,7 @@ static void columns(auto& codec, Is<HoldRow> auto& hold) {
 
 namespace {
 
-Checked<ResultRow> read(SQLite::Statement& statement) {
+Checked<ResultRow> read_row(SQLite::Statement& statement) {
     Checked<ResultRow> found;
     RowReader reader(statement);
     columns(reader, found.row);
@@ -104,7 +104,7 @@ void for_each_result(Connection& connection,
     statement.bind(3, to_hex(results_key));
     statement.bind(4, static_cast<std::int64_t>(max));
     while (statement.executeStep()) {
-        if (!visit(read(statement)))
+        if (!visit(read_row(statement)))
             return;
     }
 }
@@ -133,7 +133,7 @@ std::vector<ResultRow> idle_results(Connection& connection, std::size_t max) {
     statement.bind(3, static_cast<std::int64_t>(max));
     std::vector<ResultRow> rows;
     while (statement.executeStep())
-        rows.push_back(read(statement).row);
+        rows.push_back(read_row(statement).row);
     return rows;
 }
 
