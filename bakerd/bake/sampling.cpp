@@ -1,5 +1,6 @@
 #include "bakerd/bake/sampling.h"
 
+#include "bakerd/map/cos_sin.h"
 #include "bakerd/map/mixed_bits.h"
 
 #include <algorithm>
@@ -79,16 +80,7 @@ glm::vec2 cos_sin_turn(float u) {
     const float s =
         x * (1 + x2 * (-1 / 6.0f + x2 * (1 / 120.0f + x2 * (-1 / 5040.0f + x2 * (1 / 362880.0f)))));
     const float c = 1 + x2 * (-0.5f + x2 * (1 / 24.0f + x2 * (-1 / 720.0f + x2 * (1 / 40320.0f))));
-    switch (static_cast<int>(quarter) & 3) {
-        case 0:
-            return {c, s};
-        case 1:
-            return {-s, c};
-        case 2:
-            return {-c, -s};
-        default:
-            return {s, -c};
-    }
+    return map::quarters_on(glm::vec2(c, s), static_cast<int>(quarter));
 }
 
 }  // namespace

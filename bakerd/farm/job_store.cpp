@@ -19,19 +19,11 @@ constexpr std::size_t portion = 1000;
 constexpr const char* damaged_row = "its row in the database is damaged: submit the job again";
 
 JobSectorRow row_of(const PlannedSector& planned, std::int64_t job) {
+    if (planned.reused)
+        return done_row(job, planned.sector, planned.reused->result, planned.bound);
     JobSectorRow row;
     row.job = job;
     row.sector = planned.sector;
-    if (!planned.reused)
-        return row;
-    const worker::SectorResult& result = planned.reused->result;
-    row.state = SectorState::done;
-    row.file = result.blobs.file;
-    row.file_bytes = result.file_bytes;
-    row.probes = result.probes;
-    row.rays = result.rays;
-    row.bound = planned.bound;
-    row.warnings = result.warnings;
     return row;
 }
 

@@ -79,6 +79,23 @@ std::string first_failure(Connection& connection, const JobRow& job) {
 
 }  // namespace
 
+JobSectorRow done_row(std::int64_t job,
+                      map::SectorCoordinate sector,
+                      const worker::SectorResult& result,
+                      float bound) {
+    JobSectorRow row;
+    row.job = job;
+    row.sector = sector;
+    row.state = SectorState::done;
+    row.file = result.blobs.file;
+    row.file_bytes = result.file_bytes;
+    row.probes = result.probes;
+    row.rays = result.rays;
+    row.bound = bound;
+    row.warnings = result.warnings;
+    return row;
+}
+
 void insert_job(Connection& connection, JobRow& job) {
     job.state = JobState::creating;
     write_row(connection.statement(insert_into<JobRow>("job")), job);

@@ -13,22 +13,15 @@ namespace {
 
 JobSectorRow row_of(const FinishedSector& sector, std::int64_t job) {
     JobSectorRow row;
+    if (sector.reply)
+        row = done_row(job, sector.key.sector, *sector.reply, sector.reply->bound);
     row.job = job;
     row.sector = sector.key.sector;
     row.failed_attempts = sector.failed_attempts;
     if (!sector.reply) {
         row.state = SectorState::failed;
         row.error = sector.reply.error().sentence;
-        return row;
     }
-    const worker::SectorResult& result = *sector.reply;
-    row.state = SectorState::done;
-    row.file = result.blobs.file;
-    row.file_bytes = result.file_bytes;
-    row.probes = result.probes;
-    row.rays = result.rays;
-    row.bound = result.bound;
-    row.warnings = result.warnings;
     return row;
 }
 

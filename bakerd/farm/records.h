@@ -68,6 +68,12 @@ struct JobSectorRow {
     std::string error;
 };
 
+// A sector whose file is that of a result.
+[[nodiscard]] JobSectorRow done_row(std::int64_t job,
+                                    map::SectorCoordinate sector,
+                                    const worker::SectorResult& result,
+                                    float bound);
+
 // A baked sector, kept for the map of which it was baked and any other for which it still holds.
 struct ResultRow {
     std::int64_t id = 0;

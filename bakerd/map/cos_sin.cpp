@@ -20,16 +20,7 @@ glm::dvec2 cos_sin(double radians) {
     }
     c = 1 + c;
     s = x + x * s;
-    switch (static_cast<int>(std::fmod(quarters, 4.0) + 4) % 4) {
-        case 0:
-            return {c, s};
-        case 1:
-            return {-s, c};
-        case 2:
-            return {-c, -s};
-        default:
-            return {s, -c};
-    }
+    return quarters_on(glm::dvec2(c, s), static_cast<int>(std::fmod(quarters, 4.0)) + 4);
 }
 
 }  // namespace drtv::map

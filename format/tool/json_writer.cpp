@@ -73,28 +73,15 @@ void JsonWriter::append_quoted(std::string_view text) {
     out_ += '"';
 }
 
-JsonWriter& JsonWriter::begin_object() {
+JsonWriter& JsonWriter::begin(char bracket) {
     separate();
-    out_ += '{';
+    out_ += bracket;
     has_element_.push_back(false);
     return *this;
 }
 
-JsonWriter& JsonWriter::end_object() {
-    out_ += '}';
-    has_element_.pop_back();
-    return *this;
-}
-
-JsonWriter& JsonWriter::begin_array() {
-    separate();
-    out_ += '[';
-    has_element_.push_back(false);
-    return *this;
-}
-
-JsonWriter& JsonWriter::end_array() {
-    out_ += ']';
+JsonWriter& JsonWriter::end(char bracket) {
+    out_ += bracket;
     has_element_.pop_back();
     return *this;
 }

@@ -13,10 +13,10 @@ namespace drtv::tool {
 
 class JsonWriter {
   public:
-    JsonWriter& begin_object();
-    JsonWriter& end_object();
-    JsonWriter& begin_array();
-    JsonWriter& end_array();
+    JsonWriter& begin_object() { return begin('{'); }
+    JsonWriter& end_object() { return end('}'); }
+    JsonWriter& begin_array() { return begin('['); }
+    JsonWriter& end_array() { return end(']'); }
     JsonWriter& key(std::string_view name);
     JsonWriter& value(std::string_view text);
     JsonWriter& value(const char* text) { return value(std::string_view(text)); }
@@ -49,6 +49,8 @@ class JsonWriter {
     [[nodiscard]] const std::string& text() const { return out_; }
 
   private:
+    JsonWriter& begin(char bracket);
+    JsonWriter& end(char bracket);
     void separate();
     void append_quoted(std::string_view text);
 
