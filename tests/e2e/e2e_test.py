@@ -7,6 +7,7 @@ import hashlib
 import json
 import os
 import signal
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -376,6 +377,71 @@ class Crashes(FarmTest):
         self.assertIn("sector (0, 1): an earlier result cannot be used", again.stderr)
         self.assertIn("3 of them from the cache", again.stdout)
         self.assertEqual(read_folder(self.farm.path("fourth")), first)
+
+
+class Database(FarmTest):
+    """What the database does not take is not done; what it says is checked."""
+
+    def change(self, sql):
+        with sqlite3.connect(self.farm.path("data/farm.sqlite")) as other:
+            self.assertGreater(other.execute(sql).rowcount, 0, sql)
+        other.close()
+
+    def test_a_database_that_is_locked_for_longer_than_anyone_waits_costs_time_alone(self):
+        daemon = self.farm.daemon()
+        island = self.island(100)
+        submitted = self.farm.start_bake(
+            daemon, "submit", island, *REGION, *FEW_RAYS, "--pull", self.farm.path("out")
+        )
+        wait_until(lambda: "job 1: " in daemon.log(), what="the job")
+        wait_until(lambda: self.farm.job(daemon, 1)["sectors_done"] > 3, what="some sectors")
+        other = sqlite3.connect(self.farm.path("data/farm.sqlite"), isolation_level=None)
+        other.execute("BEGIN EXCLUSIVE")
+        time.sleep(7)
+        during = self.farm.job(daemon, 1)
+        self.assertEqual(during["state"], "running")
+        other.execute("ROLLBACK")
+        other.close()
+        self.assertEqual(submitted.wait(timeout=300), 0)
+        after = self.farm.job(daemon, 1)
+        self.assertEqual((after["state"], after["sectors_done"]), ("succeeded", 35))
+        self.assertEqual(len(read_folder(self.farm.path("out"))), 35)
+
+    def test_damaged_rows_are_misses_and_are_told(self):
+        daemon = self.farm.daemon()
+        island = self.island(100)
+        region = ["--region", "0,0,65,65", *FEW_RAYS]
+        first = self.pulled(daemon, island, *region, name="first")
+        daemon.stop()
+        # One character of the settings of a job that goes on, and the file of a result.
+        self.change("UPDATE job SET state = 0, bounces = bounces + 1")
+        self.change(
+            "UPDATE result SET file = (SELECT file FROM result WHERE i = 1 AND j = 1) WHERE i = 0 AND j = 0"
+        )
+        daemon.start()
+        job = self.farm.job(daemon, 1)
+        self.assertEqual(job["state"], "failed")
+        self.assertIn("its row in the database is damaged", job["error"])
+        again = self.farm.bake(daemon, "submit", island, *region, "--pull", self.farm.path("second"))
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertIn("sector (0, 0): the row of an earlier result is damaged", again.stderr)
+        self.assertIn("3 of them from the cache", again.stdout)
+        self.assertEqual(read_folder(self.farm.path("second")), first)
+
+    def test_a_damaged_file_is_refused_with_a_remedy(self):
+        daemon = self.farm.daemon()
+        self.pulled(daemon, self.island(100), "--region", "0,0,65,65", *FEW_RAYS)
+        daemon.stop()
+        path = self.farm.path("data/farm.sqlite")
+        with open(path, "r+b") as file:
+            for page in range(1, os.path.getsize(path) // 4096):
+                file.seek(page * 4096)
+                file.write(b"\x5a" * 600)
+        with self.assertRaisesRegex(AssertionError, "is damaged .*: move it away, and jobs begin anew"):
+            daemon.start()
+        os.remove(path)
+        daemon.start()
+        self.assertEqual(self.farm.bake(daemon, "list").returncode, 0)
 
 
 class Client(FarmTest):
