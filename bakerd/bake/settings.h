@@ -1,4 +1,4 @@
-// What can be asked of a bake. Checked once on entry; part of every result's key.
+// What can be asked of a bake. Checked once on entry; all but the tolerance part of every result's key.
 #pragma once
 
 #include "bakerd/map/digest.h"

@@ -16,8 +16,6 @@ namespace {
 // Sectors that are written in one go while others wait.
 constexpr std::size_t portion = 1000;
 
-constexpr const char* damaged_row = "its row in the database is damaged: submit the job again";
-
 JobSectorRow row_of(const PlannedSector& planned, std::int64_t job) {
     if (planned.reused)
         return done_row(job, planned.sector, planned.reused->result, planned.bound);

@@ -20,6 +20,9 @@ struct Checked {
     bool sound = true;
 };
 
+// Why a job has failed whose row is not as it was written.
+inline constexpr const char* damaged_row = "its row in the database is damaged: submit the job again";
+
 // Sets `job.id`. Its state is `creating`: after it come its sectors, in any number of portions.
 void insert_job(Connection& connection, JobRow& job);
 void insert_sectors(Connection& connection, std::span<const JobSectorRow> sectors);

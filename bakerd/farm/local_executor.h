@@ -115,7 +115,7 @@ class LocalExecutor {
     std::uint64_t next_id_ = 1;
     std::chrono::steady_clock::time_point last_news_;  // last answer, or the first request after a pause
     std::map<std::uint64_t, Request> in_flight_;       // by the id sent to the worker
-    std::deque<Request> again_;                        // to be tried again, alone
+    std::deque<Request> again_;                        // to be tried again
 
     std::thread thread_;
 };

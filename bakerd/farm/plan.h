@@ -1,4 +1,6 @@
-// Decides for each sector of a job whether a stored result can be reused, and why not.
+// Decides for each sector of a job whether a stored result can be reused, and why not: the cache knows some
+// that hold (look_up), the worker looks at the rest (make_assess_request, merge_answer), and files may be
+// damaged (drop_damaged).
 #pragma once
 
 #include "bakerd/farm/records.h"

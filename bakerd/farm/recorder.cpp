@@ -114,8 +114,8 @@ bool Recorder::try_to_record(Pending& pending) {
 store::Result<void> Recorder::write(Pending& pending) {
     const FinishedSector& sector = pending.sector;
     std::vector<JobRow> jobs;
+    std::vector<std::int64_t> damaged;
     const auto done = database_.write([&](Connection& connection) {
-        jobs.clear();
         if (sector.reply && !pending.kept) {
             insert_result(connection, {0, sector.key.sector, sector.key.results_key, *sector.reply});
             count_sectors(connection, 0, 0, 1);
@@ -123,6 +123,11 @@ store::Result<void> Recorder::write(Pending& pending) {
         for (const std::int64_t id : sector.jobs) {
             if (auto job = record_sector(connection, row_of(sector, id)))
                 jobs.push_back(std::move(*job));
+            else if (auto known = find_job(connection, id); known && known->sound)
+                jobs.push_back(
+                    std::move(known->row));  // cancelled, or a commit was kept that was called failed
+            else
+                damaged.push_back(id);
         }
     });
     if (!done)
@@ -136,7 +141,21 @@ store::Result<void> Recorder::write(Pending& pending) {
         book_.update(job, sector.reply ? &*sector.reply : nullptr);
         tell_end(job);
     }
+    for (const std::int64_t id : damaged)
+        fail_in_memory(id, damaged_row);
     return {};
+}
+
+// After a restart it has failed in the database too.
+void Recorder::fail_in_memory(std::int64_t id, const std::string& error) {
+    auto view = book_.view(id);
+    if (!view || view->row.state != JobState::running)
+        return;
+    view->row.state = JobState::failed;
+    view->row.error = error;
+    view->row.ended_ms = unix_milliseconds();
+    book_.update(view->row);
+    tell_end(view->row);
 }
 
 // A job waits for a database that is locked or full. It cannot wait for one that is damaged.
@@ -147,13 +166,7 @@ void Recorder::refuse(const Pending& pending, const store::Error& error) {
             book_.warn(id, fmt::format("a baked sector waits to be written: {}", error.message));
             continue;
         }
-        auto view = book_.view(id);
-        if (!view || view->row.state != JobState::running)
-            continue;
-        view->row.state = JobState::failed;
-        view->row.error = error.message;
-        view->row.ended_ms = unix_milliseconds();
-        book_.update(view->row);
+        fail_in_memory(id, error.message);
     }
     if (error.code == store::ErrorCode::data_loss)
         static_cast<void>(book_.leave(pending.sector.id, pending.sector.jobs));

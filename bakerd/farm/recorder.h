@@ -46,6 +46,7 @@ class Recorder {
     [[nodiscard]] bool try_to_record(Pending& pending);
     [[nodiscard]] store::Result<void> write(Pending& pending);
     void refuse(const Pending& pending, const store::Error& error);
+    void fail_in_memory(std::int64_t job, const std::string& error);
 
     Database& database_;
     ResultCache& cache_;

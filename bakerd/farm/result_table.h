@@ -1,4 +1,5 @@
-// Results and the maps for which each holds, in the database. Only the cache asks here, and who writes jobs.
+// Results and the maps for which each holds, in the database. For the cache, and for the transactions that
+// write jobs.
 #pragma once
 
 #include "bakerd/farm/database.h"

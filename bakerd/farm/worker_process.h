@@ -19,7 +19,7 @@ class WorkerProcess {
   public:
     struct Events {
         std::function<void(worker::Answer)> answered;
-        std::function<void(std::string)> died;  // how, as half a sentence: "was killed by signal 9 (Killed)"
+        std::function<void(std::string)> died;  // how, as half a sentence: "was ended by signal 9 (Killed)"
     };
 
     // REQUIRES: the process ignores SIGPIPE, because a worker may die while it is written to.

@@ -160,6 +160,14 @@ TEST_F(RecorderTest, ARestartBakesSectorsOfDamagedRowsAgain) {
     EXPECT_FALSE(after.next());
 }
 
+TEST_F(RecorderTest, AJobWhoseRowIsDamagedMeanwhileFailsAndDoesNotHang) {
+    const JobRow job = add({{0, 0}, {1, 0}});
+    change("UPDATE job SET bounces = 1");
+    recorder->record(bake_next());
+    EXPECT_NE(wait(job.id, has_ended).row.error.find("damaged"), std::string::npos);
+    EXPECT_FALSE(book.next());
+}
+
 TEST_F(RecorderTest, ARestartFailsAJobWhoseSettingsAreDamaged) {
     const JobRow job = add({{0, 0}});
     change("UPDATE job SET bounces = 1");
