@@ -1,6 +1,6 @@
 // The farm's state in one SQLite file (WAL, synchronous FULL), and the one connection to it. Losing the file
 // loses jobs, never correctness: it can be rebuilt by submitting again. Tables stand in job_table, map_table,
-// result_cache.
+// result_table.
 #pragma once
 
 #include "bakerd/store/error.h"
