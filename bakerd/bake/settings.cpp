@@ -21,7 +21,7 @@ tl::expected<Number, std::string> parse(std::string_view key,
         return tl::unexpected(
             fmt::format("{} must be a number from {} to {}, not '{}'", key, least, most, value));
     }
-    return number;
+    return number + Number{0};  // no negative zero: it is the same setting
 }
 
 template <class Number>

@@ -29,12 +29,12 @@ Connection::Connection(const std::string& path, std::chrono::milliseconds patien
 }
 
 SQLite::Statement& Connection::statement(const std::string& sql) {
-    std::unique_ptr<SQLite::Statement>& known = statements_[sql];
-    if (!known)
-        known = std::make_unique<SQLite::Statement>(database_, sql);
-    known->tryReset();
-    known->clearBindings();
-    return *known;
+    auto known = statements_.find(sql);
+    if (known == statements_.end())
+        known = statements_.emplace(sql, std::make_unique<SQLite::Statement>(database_, sql)).first;
+    known->second->tryReset();
+    known->second->clearBindings();
+    return *known->second;
 }
 
 void Connection::end_statements() {

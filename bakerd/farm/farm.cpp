@@ -1,7 +1,13 @@
 #include "bakerd/farm/farm.h"
 
 #include "bakerd/farm/clock.h"
+#include "bakerd/farm/database.h"
 #include "bakerd/farm/job_store.h"
+#include "bakerd/farm/job_table.h"
+#include "bakerd/farm/maps.h"
+#include "bakerd/farm/planner.h"
+#include "bakerd/farm/recorder.h"
+#include "bakerd/farm/result_cache.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -77,7 +83,7 @@ Result<MapView> Farm::get_map(const Digest& id) {
 }
 
 Result<PlanView> Farm::plan_job(const JobRequest& request) {
-    ResultCache::Pin pin(*cache_);
+    CachePin pin(*cache_);
     auto planned = planner_->plan(request, pin);
     if (!planned)
         return tl::unexpected(planned.error());
@@ -90,13 +96,17 @@ Result<JobView> Farm::create_job(const JobRequest& request) {
         return fail(ErrorCode::invalid_argument, "the request id is longer than 64 bytes");
     if (const auto same = book_.begin_request(request.request_id))
         return get_job(*same);
-    auto view = create_planned(request);
-    book_.end_request(request.request_id);
-    return view;
+    // Whatever is thrown: others wait for the request's end.
+    struct End {
+        JobBook& book;
+        const std::string& id;
+        ~End() { book.end_request(id); }
+    } end{book_, request.request_id};
+    return create_planned(request);
 }
 
 Result<JobView> Farm::create_planned(const JobRequest& request) {
-    ResultCache::Pin pin(*cache_);
+    CachePin pin(*cache_);
     auto planned = planner_->plan(request, pin);
     if (!planned)
         return tl::unexpected(planned.error());
@@ -152,12 +162,15 @@ Result<std::vector<JobView>> Farm::list_jobs(std::int64_t before, std::size_t co
 }
 
 Result<JobView> Farm::cancel_job(std::int64_t id) {
+    if (!book_.view(id))
+        return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
     std::optional<JobRow> cancelled;
     const auto written = database_->write([&](Connection& connection) {
         auto job = find_job(connection, id);
         if (!job || job->row.state != JobState::running)
             return;
-        job->row.state = JobState::cancelled;
+        job->row.state = job->sound ? JobState::cancelled : JobState::failed;
+        job->row.error = job->sound ? "" : damaged_row;
         job->row.ended_ms = unix_milliseconds();
         update_job(connection, job->row);
         cancelled = std::move(job->row);
@@ -166,6 +179,7 @@ Result<JobView> Farm::cancel_job(std::int64_t id) {
         return tl::unexpected(written.error());
     if (cancelled) {
         book_.update(*cancelled);
+        cache_->job_ended();
         spdlog::info("job {} was cancelled", id);
     }
     return get_job(id);
@@ -182,7 +196,8 @@ SectorView Farm::view_of(Checked<JobSectorRow> sector) const {
         sector.row.state = SectorState::failed;
         sector.row.error = "its row in the database is damaged";
     }
-    const bool running = book_.is_running(sector.row.job, sector.row.sector);
+    const bool running =
+        sector.row.state == SectorState::waiting && book_.is_running(sector.row.job, sector.row.sector);
     return {std::move(sector.row), running};
 }
 

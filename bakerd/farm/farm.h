@@ -3,17 +3,11 @@
 #pragma once
 
 #include "bakerd/farm/data_folder.h"
-#include "bakerd/farm/database.h"
 #include "bakerd/farm/job_book.h"
 #include "bakerd/farm/job_request.h"
-#include "bakerd/farm/job_table.h"
 #include "bakerd/farm/local_executor.h"
-#include "bakerd/farm/maps.h"
 #include "bakerd/farm/plan.h"
-#include "bakerd/farm/planner.h"
-#include "bakerd/farm/recorder.h"
 #include "bakerd/farm/records.h"
-#include "bakerd/farm/result_cache.h"
 #include "bakerd/store/blob_store.h"
 #include "bakerd/store/error.h"
 #include "bakerd/store/manifest.h"
@@ -25,6 +19,12 @@
 #include <vector>
 
 namespace drtv::farm {
+
+class Database;
+class Maps;
+class Planner;
+class Recorder;
+class ResultCache;
 
 // What a job would do.
 struct PlanView {

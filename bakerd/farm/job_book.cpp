@@ -8,7 +8,9 @@
 namespace drtv::farm {
 
 void JobBook::add(JobRow row, std::span<const WantedSector> wanted, std::vector<std::string> warnings) {
-    BakeKey key{reuse::results_key(row.settings), row.inventory, {}, 0};
+    // A map from before there were inventories is like no other.
+    const Digest& content = row.inventory == Digest{} ? row.manifest : row.inventory;
+    BakeKey key{reuse::results_key(row.settings), content, {}, 0};
     const std::lock_guard lock(mutex_);
     Job& job = jobs_[row.id];
     job.row = std::move(row);
@@ -90,7 +92,6 @@ std::optional<FinishedSector> JobBook::finish(std::uint64_t id,
     if (found == tasks_.end())
         return std::nullopt;
     Task& task = found->second;
-    task.finished = true;
     // What it takes from nothing is known of the earlier result.
     if (reply && task.earlier_seconds > 0)
         reply->seconds = task.earlier_seconds;
@@ -119,7 +120,7 @@ void JobBook::put_back(std::uint64_t id) {
     if (found == tasks_.end())
         return;
     Task& task = found->second;
-    task.running = task.finished = false;
+    task.running = false;
     if (task.jobs.empty())
         forget(id);
     else
@@ -129,6 +130,9 @@ void JobBook::put_back(std::uint64_t id) {
 void JobBook::update(const JobRow& row, const worker::SectorResult* result) {
     const std::lock_guard lock(mutex_);
     Job& job = jobs_.at(row.id);
+    // Writers tell the book after they have written, in any order: an end is final.
+    if (job.row.state != JobState::running)
+        return;
     job.row = row;
     if (result != nullptr) {
         ++job.baked;

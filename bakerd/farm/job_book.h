@@ -1,5 +1,5 @@
 // The jobs in memory, and the sectors that are waiting or at work for them. Knows no database: what is told
-// here has been written already. Thread-safe.
+// here has been written already, or cannot be, because the database is damaged. Thread-safe.
 #pragma once
 
 #include "bakerd/farm/local_executor.h"
@@ -110,7 +110,6 @@ class JobBook {
         double earlier_seconds = 0;  // that the earlier result took from nothing; 0: there is none
         std::set<std::int64_t> jobs;
         bool running = false;
-        bool finished = false;
     };
 
     // `key` is the sector's, but for its tolerance.

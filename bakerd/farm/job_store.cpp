@@ -81,8 +81,19 @@ std::vector<WantedSector> waiting_of(std::span<const Checked<JobSectorRow>> sect
     return wanted;
 }
 
+void fail_damaged(Connection& connection, JobRow job, JobBook& book) {
+    spdlog::warn("job {}: {}", job.id, damaged_row);
+    job.state = JobState::failed;
+    job.error = damaged_row;
+    job.ended_ms = job.ended_ms != 0 ? job.ended_ms : unix_milliseconds();
+    update_job(connection, job);
+    book.add(std::move(job), {});
+}
+
 void resume(Connection& connection, JobRow job, JobBook& book) {
     std::vector<Checked<JobSectorRow>> sectors = sectors_of_job(connection, job.id);
+    if (static_cast<std::int64_t>(sectors.size()) != job.sectors_total)
+        return fail_damaged(connection, std::move(job), book);
     recount(connection, sectors, job);
     spdlog::info("job {} goes on: {} of {} sectors are done", job.id, job.sectors_done, job.sectors_total);
     book.add(job, waiting_of(sectors));
@@ -101,14 +112,17 @@ store::Result<void> write_job(Database& database, const Plan& plan, JobRow& job)
         if (!done)
             job = before;
     }
-    if (!done)
-        return done;
-    return database.write([&](Connection& connection) {
-        job.state = JobState::running;
-        end_if_complete(connection, job);
-        update_job(connection, job);
-        count_sectors(connection, job.sectors_cached, job.sectors_near, 0);
-    });
+    if (done)
+        done = database.write([&](Connection& connection) {
+            job.state = JobState::running;
+            end_if_complete(connection, job);
+            update_job(connection, job);
+            count_sectors(connection, job.sectors_cached, job.sectors_near, 0);
+        });
+    // If this is refused as well, the next start removes it.
+    if (!done && job.id != 0)
+        static_cast<void>(database.write([&](Connection& connection) { remove_job(connection, job.id); }));
+    return done;
 }
 
 std::vector<WantedSector> wanted_by(const Plan& plan) {
@@ -125,14 +139,9 @@ store::Result<void> load_jobs(Database& database, JobBook& book) {
         remove_unfinished_jobs(connection);
         for (Checked<JobRow>& job : all_jobs(connection)) {
             JobRow& row = job.row;
-            if (!job.sound) {
-                spdlog::warn("job {}: {}", row.id, damaged_row);
-                row.state = JobState::failed;
-                row.error = damaged_row;
-                row.ended_ms = row.ended_ms != 0 ? row.ended_ms : unix_milliseconds();
-                update_job(connection, row);
-            }
-            if (row.state == JobState::running)
+            if (!job.sound)
+                fail_damaged(connection, std::move(row), book);
+            else if (row.state == JobState::running)
                 resume(connection, std::move(row), book);
             else
                 book.add(std::move(row), {});

@@ -97,6 +97,9 @@ JobSectorRow done_row(std::int64_t job,
 }
 
 void insert_job(Connection& connection, JobRow& job) {
+    // What is left of an attempt that failed.
+    if (!job.request_id.empty())
+        remove_unfinished_jobs(connection, job.request_id);
     job.state = JobState::creating;
     write_row(connection.statement(insert_into<JobRow>("job")), job);
     job.id = connection.last_id();
@@ -117,9 +120,13 @@ void update_job(Connection& connection, const JobRow& job) {
 }
 
 void replace_sector(Connection& connection, const JobSectorRow& sector) {
-    write_row(
-        connection.statement(update<JobSectorRow>("job_sector", "WHERE job = :job AND i = :i AND j = :j")),
-        sector);
+    SQLite::Statement& remove =
+        connection.statement("DELETE FROM job_sector WHERE job = ? AND i = ? AND j = ?");
+    remove.bind(1, sector.job);
+    remove.bind(2, sector.sector.i);
+    remove.bind(3, sector.sector.j);
+    remove.exec();
+    insert_sectors(connection, {&sector, 1});
 }
 
 std::optional<JobRow> record_sector(Connection& connection, const JobSectorRow& sector) {
@@ -130,9 +137,13 @@ std::optional<JobRow> record_sector(Connection& connection, const JobSectorRow& 
         update<JobSectorRow>("job_sector", "WHERE job = :job AND i = :i AND j = :j AND state = :waiting"));
     statement.bind(":waiting", static_cast<std::int64_t>(SectorState::waiting));
     write_row(statement, sector);
-    if (connection.raw().getChanges() == 0)
-        return std::nullopt;
     JobRow& job = found->row;
+    if (connection.raw().getChanges() == 0) {
+        const auto known = sector_of_job(connection, sector.job, sector.sector);
+        if (known && known->sound)
+            return std::move(job);  // it was counted already
+        replace_sector(connection, sector);
+    }
     if (sector.state == SectorState::done) {
         ++job.sectors_done;
         job.probes += sector.probes;
@@ -170,12 +181,26 @@ std::vector<Checked<JobRow>> all_jobs(Connection& connection) {
     return jobs;
 }
 
-void remove_unfinished_jobs(Connection& connection) {
-    const std::string unfinished =
-        fmt::format("(SELECT id FROM job WHERE state = {})", static_cast<int>(JobState::creating));
-    for (const char* table : {"job_sector", "job_override"})
-        connection.execute(fmt::format("DELETE FROM {} WHERE job IN {}", table, unfinished));
-    connection.execute("DELETE FROM job WHERE id IN " + unfinished);
+void remove_job(Connection& connection, std::int64_t id) {
+    for (const char* sql : {"DELETE FROM job_sector WHERE job = ?",
+                            "DELETE FROM job_override WHERE job = ?",
+                            "DELETE FROM job WHERE id = ?"}) {
+        SQLite::Statement& remove = connection.statement(sql);
+        remove.bind(1, id);
+        remove.exec();
+    }
+}
+
+void remove_unfinished_jobs(Connection& connection, const std::string& request_id) {
+    SQLite::Statement& statement =
+        connection.statement("SELECT id FROM job WHERE state = ?1 AND (?2 = '' OR request_id = ?2)");
+    statement.bind(1, static_cast<std::int64_t>(JobState::creating));
+    statement.bind(2, request_id);
+    std::vector<std::int64_t> unfinished;
+    while (statement.executeStep())
+        unfinished.push_back(statement.getColumn(0).getInt64());
+    for (const std::int64_t id : unfinished)
+        remove_job(connection, id);
 }
 
 std::vector<Checked<JobSectorRow>> sectors_of_job(Connection& connection,

@@ -13,13 +13,6 @@
 
 namespace drtv::farm {
 
-// A row, and whether it is as it was written.
-template <class Row>
-struct Checked {
-    Row row;
-    bool sound = true;
-};
-
 // Why a job has failed whose row is not as it was written.
 inline constexpr const char* damaged_row = "its row in the database is damaged: submit the job again";
 
@@ -32,8 +25,7 @@ void update_job(Connection& connection, const JobRow& job);
 void replace_sector(Connection& connection, const JobSectorRow& sector);
 
 // What one sector of a job has come to: `sector.state` is done or failed. Counts it, and ends the job when it
-// was the last. Gives the job as it is then; nothing when it does not run any more, or is damaged, or has no
-// such sector that waits.
+// was the last. Gives the job as it is then; nothing when it does not run any more, or its row is damaged.
 [[nodiscard]] std::optional<JobRow> record_sector(Connection& connection, const JobSectorRow& sector);
 
 // The state that follows from the counts, with a sentence about the first sector that failed.
@@ -42,8 +34,9 @@ void end_if_complete(Connection& connection, JobRow& job);
 [[nodiscard]] std::optional<Checked<JobRow>> find_job(Connection& connection, std::int64_t id);
 // Oldest first.
 [[nodiscard]] std::vector<Checked<JobRow>> all_jobs(Connection& connection);
-// Removes jobs whose creation never ended.
-void remove_unfinished_jobs(Connection& connection);
+void remove_job(Connection& connection, std::int64_t id);
+// Removes jobs whose creation never ended: all, or that of a request.
+void remove_unfinished_jobs(Connection& connection, const std::string& request_id = "");
 
 // Rows `first` to `first + count` of a job's sectors in the order of (j, i).
 [[nodiscard]] std::vector<Checked<JobSectorRow>> sectors_of_job(Connection& connection,

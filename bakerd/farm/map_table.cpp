@@ -2,6 +2,8 @@
 
 #include "bakerd/farm/row_codec.h"
 
+#include <spdlog/spdlog.h>
+
 namespace drtv::farm {
 namespace {
 
@@ -46,6 +48,11 @@ void insert_row(Connection& connection, const std::string& table, const Row& row
     statement.exec();
 }
 
+std::nullopt_t damaged(const Digest& manifest) {
+    spdlog::warn("what the database says of the map {} is damaged: submit it again", to_hex(manifest));
+    return std::nullopt;
+}
+
 }  // namespace
 
 void put_map(Connection& connection, const MapRow& map) {
@@ -78,8 +85,10 @@ std::optional<worker::MapSummary> find_map(Connection& connection, const Digest&
     Columns row;
     RowReader reader(statement);
     columns(reader, row);
+    if (!reader.sound())
+        return damaged(manifest);
     // One from before there were inventories is looked at again.
-    if (!reader.sound() || row.inventory == Digest{})
+    if (row.inventory == Digest{})
         return std::nullopt;
     worker::MapSummary summary{
         row.content, row.inventory, {}, row.object_count, row.triangle_count, row.warnings};
@@ -91,11 +100,11 @@ std::optional<worker::MapSummary> find_map(Connection& connection, const Digest&
         RowReader sector_reader(sectors);
         columns(sector_reader, sector);
         if (!sector_reader.sound())
-            return std::nullopt;
+            return damaged(manifest);
         summary.sectors.push_back(sector.sector);
     }
     if (static_cast<std::int64_t>(summary.sectors.size()) != row.sector_count)
-        return std::nullopt;
+        return damaged(manifest);
     return summary;
 }
 

@@ -1,5 +1,6 @@
 #include "bakerd/farm/maps.h"
 
+#include "bakerd/farm/database.h"
 #include "bakerd/farm/map_table.h"
 
 #include <fmt/format.h>

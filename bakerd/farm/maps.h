@@ -1,7 +1,6 @@
 // The maps that the farm knows: manifests of files in the store, and what is in them. Thread-safe.
 #pragma once
 
-#include "bakerd/farm/database.h"
 #include "bakerd/farm/local_executor.h"
 #include "bakerd/farm/records.h"
 #include "bakerd/store/blob_store.h"
@@ -10,11 +9,7 @@
 
 namespace drtv::farm {
 
-struct MapView {
-    Digest id;
-    store::Manifest manifest;
-    worker::MapSummary summary;
-};
+class Database;
 
 class Maps {
   public:

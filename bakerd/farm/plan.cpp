@@ -1,5 +1,7 @@
 #include "bakerd/farm/plan.h"
 
+#include "bakerd/farm/result_cache.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +22,14 @@ float distance_m(const map::SectorCoordinate& sector, const map::Bounds& bounds)
     const float y = (static_cast<float>(sector.j) + 0.5f) * side;
     return std::hypot(x - std::clamp(x, bounds.low.x, bounds.high.x),
                       y - std::clamp(y, bounds.low.y, bounds.high.y));
+}
+
+// Around the nearest change.
+float ring_of(const map::SectorCoordinate& sector, std::span<const worker::Assessments::Change> changes) {
+    float nearest_m = std::numeric_limits<float>::max();
+    for (const worker::Assessments::Change& change : changes)
+        nearest_m = std::min(nearest_m, distance_m(sector, change.bounds));
+    return std::floor(nearest_m / ring_m);
 }
 
 void reuse_result(PlannedSector& planned, ResultRow result, float bound) {
@@ -49,7 +59,7 @@ std::int64_t Plan::count(reuse::Verdict verdict) const {
 store::Result<Plan> look_up(ResultCache& cache,
                             std::span<const map::SectorCoordinate> sectors,
                             const CacheQuery& query,
-                            ResultCache::Pin& pin) {
+                            CachePin& pin) {
     const auto mean_seconds = cache.mean_seconds(query.results_key);
     if (!mean_seconds)
         return tl::unexpected(mean_seconds.error());
@@ -118,12 +128,9 @@ void merge_answer(const worker::Assessments& answer, Plan& plan) {
         warn(plan, warning);
     if (plan.changes.empty())
         return;
-    std::ranges::stable_sort(plan.sectors, {}, [&](const PlannedSector& planned) {
-        float nearest = std::numeric_limits<float>::max();
-        for (const worker::Assessments::Change& change : plan.changes)
-            nearest = std::min(nearest, distance_m(planned.sector, change.bounds));
-        return std::floor(nearest / ring_m);
-    });
+    for (PlannedSector& planned : plan.sectors)
+        planned.ring = ring_of(planned.sector, plan.changes);
+    std::ranges::stable_sort(plan.sectors, {}, &PlannedSector::ring);
 }
 
 void drop_damaged(store::BlobStore& blobs, Plan& plan) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "bakerd/farm/records.h"
-#include "bakerd/farm/result_cache.h"
 #include "bakerd/reuse/verdict.h"
 #include "bakerd/store/blob_store.h"
 #include "bakerd/store/error.h"
@@ -18,6 +17,10 @@
 
 namespace drtv::farm {
 
+class CachePin;
+class ResultCache;
+struct CacheQuery;
+
 struct PlannedSector {
     map::SectorCoordinate sector;
     reuse::Verdict verdict = reuse::Verdict::rebake;
@@ -27,6 +30,7 @@ struct PlannedSector {
     std::optional<ResultRow> earlier;   // of another map, of which a rebake reuses what holds
     float share = 1;                    // of its probes, that a rebake has to bake
     double seconds = 0;                 // that baking it will take, as far as is known; 0: not
+    float ring = 0;                     // around the nearest change: the nearest are baked first
     std::vector<ResultRow> candidates;  // to be assessed, the one used last first
 };
 
@@ -42,7 +46,7 @@ struct Plan {
 [[nodiscard]] store::Result<Plan> look_up(ResultCache& cache,
                                           std::span<const map::SectorCoordinate> sectors,
                                           const CacheQuery& query,
-                                          ResultCache::Pin& pin);
+                                          CachePin& pin);
 
 // The question about the candidates; nothing when there are none.
 [[nodiscard]] std::optional<worker::AssessRequest> make_assess_request(const Plan& plan,

@@ -1,5 +1,7 @@
 #include "bakerd/farm/planner.h"
 
+#include "bakerd/farm/result_cache.h"
+
 #include "bakerd/reuse/footprint.h"
 
 #include <fmt/format.h>
@@ -9,7 +11,7 @@
 
 namespace drtv::farm {
 
-store::Result<PlannedJob> Planner::plan(const JobRequest& request, ResultCache::Pin& pin) {
+store::Result<PlannedJob> Planner::plan(const JobRequest& request, CachePin& pin) {
     const auto settings = settings_of(request);
     if (!settings)
         return tl::unexpected(settings.error());
@@ -24,7 +26,9 @@ store::Result<PlannedJob> Planner::plan(const JobRequest& request, ResultCache::
     if (!plan)
         return tl::unexpected(plan.error());
     if (auto question = make_assess_request(*plan, request.manifest, *settings)) {
-        const auto answer = executor_.assess(std::move(*question)).get();
+        const auto answer = ask(std::move(*question));
+        if (!answer && answer.error().may_retry)
+            return store::fail(store::ErrorCode::unavailable, answer.error().sentence);
         if (answer)
             merge_answer(*answer, *plan);
         else  // all that is not known for certain is baked
@@ -35,6 +39,28 @@ store::Result<PlannedJob> Planner::plan(const JobRequest& request, ResultCache::
     for (const std::string& warning : plan->warnings)
         spdlog::warn("{}", warning);
     return PlannedJob{*settings, map->inventory, std::move(*plan)};
+}
+
+// In portions, so that other questions are answered in between.
+Reply<worker::Assessments> Planner::ask(worker::AssessRequest question) {
+    constexpr std::size_t portion = 1000;
+    worker::Assessments all;
+    for (std::size_t first = 0; first < question.sectors.size(); first += portion) {
+        const std::size_t end = std::min(first + portion, question.sectors.size());
+        worker::AssessRequest part{question.manifest, question.settings, {}};
+        part.sectors.assign(question.sectors.begin() + static_cast<std::ptrdiff_t>(first),
+                            question.sectors.begin() + static_cast<std::ptrdiff_t>(end));
+        auto answer = executor_.assess(std::move(part)).get();
+        if (!answer)
+            return answer;
+        all.sectors.insert(all.sectors.end(), answer->sectors.begin(), answer->sectors.end());
+        all.warnings.insert(all.warnings.end(), answer->warnings.begin(), answer->warnings.end());
+        for (worker::Assessments::Change& change : answer->changes) {
+            if (std::ranges::find(all.changes, change) == all.changes.end())
+                all.changes.push_back(std::move(change));
+        }
+    }
+    return all;
 }
 
 double seconds_to_bake(const Plan& plan, int threads) {

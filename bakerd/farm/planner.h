@@ -5,7 +5,6 @@
 #include "bakerd/farm/local_executor.h"
 #include "bakerd/farm/maps.h"
 #include "bakerd/farm/plan.h"
-#include "bakerd/farm/result_cache.h"
 #include "bakerd/store/blob_store.h"
 #include "bakerd/store/error.h"
 
@@ -25,9 +24,11 @@ class Planner {
         : maps_(maps), cache_(cache), blobs_(blobs), executor_(executor) {}
 
     // Asks the worker about results of other maps. What the plan reuses stays while `pin` lives.
-    [[nodiscard]] store::Result<PlannedJob> plan(const JobRequest& request, ResultCache::Pin& pin);
+    [[nodiscard]] store::Result<PlannedJob> plan(const JobRequest& request, CachePin& pin);
 
   private:
+    [[nodiscard]] Reply<worker::Assessments> ask(worker::AssessRequest question);
+
     Maps& maps_;
     ResultCache& cache_;
     store::BlobStore& blobs_;

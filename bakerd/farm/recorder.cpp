@@ -82,7 +82,7 @@ void Recorder::run() {
         if (recorded)
             continue;
         if (stopping_)
-            continue;  // after a restart the sector waits again
+            return;  // after a restart what is left waits again
         pending_.push_front(std::move(pending));
         changed_.wait_for(lock, pause_, [this] { return stopping_; });
     }
@@ -90,10 +90,13 @@ void Recorder::run() {
 
 bool Recorder::try_to_record(Pending& pending) {
     FinishedSector& sector = pending.sector;
-    const auto done = sector.reply && !pending.kept
-                          ? cache_.commit_if_there(*sector.reply, [&] { return write(pending); })
-                          : write(pending);
+    const auto done =
+        sector.reply ? cache_.commit_if_there(*sector.reply, [&] { return write(pending); }) : write(pending);
     if (!done && done.error().code == store::ErrorCode::not_found) {
+        spdlog::warn("sector ({}, {}) is baked again: {}",
+                     sector.key.sector.i,
+                     sector.key.sector.j,
+                     done.error().message);
         book_.put_back(sector.id);
         work_waits_();
         return true;
@@ -139,6 +142,8 @@ store::Result<void> Recorder::write(Pending& pending) {
             "sector ({}, {}): {}", sector.key.sector.i, sector.key.sector.j, sector.reply.error().sentence);
     for (const JobRow& job : jobs) {
         book_.update(job, sector.reply ? &*sector.reply : nullptr);
+        if (job.state != JobState::running)
+            cache_.job_ended();
         tell_end(job);
     }
     for (const std::int64_t id : damaged)
@@ -168,8 +173,13 @@ void Recorder::refuse(const Pending& pending, const store::Error& error) {
         }
         fail_in_memory(id, error.message);
     }
-    if (error.code == store::ErrorCode::data_loss)
-        static_cast<void>(book_.leave(pending.sector.id, pending.sector.jobs));
+    if (error.code != store::ErrorCode::data_loss)
+        return;
+    // Jobs that joined meanwhile try for themselves.
+    if (!book_.leave(pending.sector.id, pending.sector.jobs).empty()) {
+        book_.put_back(pending.sector.id);
+        work_waits_();
+    }
 }
 
 }  // namespace drtv::farm

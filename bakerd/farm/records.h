@@ -5,6 +5,7 @@
 #include "bakerd/farm/job_request.h"
 #include "bakerd/map/digest.h"
 #include "bakerd/map/ground.h"
+#include "bakerd/store/manifest.h"
 #include "bakerd/worker/requests.h"
 
 #include <cstdint>
@@ -91,6 +92,29 @@ struct HoldRow {
 
 struct MapRow {
     Digest manifest;
+    worker::MapSummary summary;
+};
+
+// A row, and whether it is as it was written.
+template <class Row>
+struct Checked {
+    Row row;
+    bool sound = true;
+};
+
+struct CacheCounts {
+    // Kept now: files and footprints.
+    std::int64_t results = 0;
+    std::int64_t bytes = 0;
+    // Sectors of all jobs since the database was made.
+    std::int64_t hits = 0;
+    std::int64_t near_hits = 0;
+    std::int64_t baked = 0;
+};
+
+struct MapView {
+    Digest id;
+    store::Manifest manifest;
     worker::MapSummary summary;
 };
 

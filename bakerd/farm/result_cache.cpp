@@ -29,13 +29,21 @@ store::Result<void> ResultCache::open() {
 
 store::Result<std::vector<CacheEntry>> ResultCache::find(std::span<const map::SectorCoordinate> sectors,
                                                          const CacheQuery& query,
-                                                         Pin& pin) {
+                                                         CachePin& pin) {
     std::vector<CacheEntry> entries;
     const auto find_one = [&](Connection& connection, map::SectorCoordinate sector) {
         CacheEntry& entry = entries.emplace_back();
+        for (const Checked<ResultRow>& row :
+             results_that_hold(connection, sector, query.results_key, query.inventory)) {
+            if (!entry.held)
+                take_in(connection, row, query, entry, pin);
+        }
+        if (entry.held)
+            return;
+        entry.candidates.clear();
         for_each_result(
-            connection, sector, query.results_key, max_candidates, [&](const Checked<ResultRow>& found) {
-                take_in(connection, found, query, entry, pin);
+            connection, sector, query.results_key, max_candidates, [&](const Checked<ResultRow>& row) {
+                take_in(connection, row, query, entry, pin);
                 return !entry.held;
             });
     };
@@ -57,7 +65,7 @@ void ResultCache::take_in(Connection& connection,
                           const Checked<ResultRow>& found,
                           const CacheQuery& query,
                           CacheEntry& entry,
-                          Pin& pin) {
+                          CachePin& pin) {
     const ResultRow& row = found.row;
     if (!found.sound) {
         entry.warning = fmt::format(
@@ -85,29 +93,36 @@ store::Result<double> ResultCache::mean_seconds(const Digest& results_key) {
 }
 
 store::Result<void> ResultCache::keep_to_limit() {
-    if (bytes_ <= max_bytes_)
+    // What is needed may be over the limit: then not every sector looks for room again.
+    if (bytes_ <= max_bytes_ || bytes_ <= needed_bytes_ + needed_bytes_ / 10)
         return {};
     // Some more than needed, so that not every sector has to wait for this.
-    return shrink_to(max_bytes_ / 10 * 9);
+    auto done = shrink_to(max_bytes_ / 10 * 9);
+    needed_bytes_ = bytes_ > max_bytes_ ? bytes_.load() : 0;
+    return done;
 }
 
 store::Result<void> ResultCache::shrink_to(std::int64_t max_bytes) {
     const std::lock_guard lock(files_mutex_);
     std::size_t removed = 0;
+    std::size_t pinned = 0;
     while (bytes_ > max_bytes) {
-        std::vector<ResultRow> rows;
-        const auto done =
-            database_.write([&](Connection& connection) { rows = remove_idle(connection, max_bytes); });
+        Removed portion_removed;
+        const auto done = database_.write(
+            [&](Connection& connection) { portion_removed = remove_idle(connection, pinned, max_bytes); });
         if (!done)
             return done;
-        if (rows.empty())
+        if (portion_removed.rows.empty() && portion_removed.pinned == 0)
             break;  // what is left is needed
-        for (const ResultRow& row : rows)
-            bytes_ -= row.result.file_bytes + row.result.footprint_bytes;
-        removed += rows.size();
+        pinned += portion_removed.pinned;
+        removed += portion_removed.rows.size();
         // The files after the rows: a row without its file would be a result that is lost.
-        if (auto gone = remove_blobs(rows); !gone)
+        if (auto gone = remove_blobs(portion_removed.rows); !gone)
             return gone;
+        const auto left = counts();
+        if (!left)
+            return tl::unexpected(left.error());
+        bytes_ = left->bytes;
     }
     if (removed > 0)
         spdlog::info("{} results left the cache, {} bytes are in it", removed, bytes_.load());
@@ -115,19 +130,27 @@ store::Result<void> ResultCache::shrink_to(std::int64_t max_bytes) {
 }
 
 // Those used longest ago, without any that a job holds.
-std::vector<ResultRow> ResultCache::remove_idle(Connection& connection, std::int64_t max_bytes) {
-    std::vector<ResultRow> rows;
+ResultCache::Removed ResultCache::remove_idle(Connection& connection,
+                                              std::size_t skipped,
+                                              std::int64_t max_bytes) {
+    Removed removed;
     std::int64_t left = bytes_;
-    for (ResultRow& row : idle_results(connection, portion)) {
+    for (Checked<ResultRow>& found : idle_results(connection, skipped, portion)) {
+        const worker::SectorResult& result = found.row.result;
         if (left <= max_bytes)
             break;
-        if (is_pinned(row.result.blobs.file))
+        if (is_pinned(result.blobs.file)) {
+            ++removed.pinned;
             continue;
-        left -= row.result.file_bytes + row.result.footprint_bytes;
-        remove_result(connection, row.id);
-        rows.push_back(std::move(row));
+        }
+        left -= result.file_bytes + result.footprint_bytes;
+        remove_result(connection, found.row.id);
+        // What a damaged row says of its blobs may be of others.
+        if (!found.sound)
+            found.row.result.blobs = {};
+        removed.rows.push_back(std::move(found.row));
     }
-    return rows;
+    return removed;
 }
 
 store::Result<void> ResultCache::remove_blobs(const std::vector<ResultRow>& rows) {
@@ -159,13 +182,13 @@ bool ResultCache::is_pinned(const Digest& file) {
     return pins_.contains(file);
 }
 
-void ResultCache::Pin::add(const Digest& file) {
+void CachePin::add(const Digest& file) {
     const std::lock_guard lock(cache_.pins_mutex_);
     ++cache_.pins_[file];
     files_.push_back(file);
 }
 
-ResultCache::Pin::~Pin() {
+CachePin::~CachePin() {
     const std::lock_guard lock(cache_.pins_mutex_);
     for (const Digest& file : files_) {
         const auto pin = cache_.pins_.find(file);

@@ -1,5 +1,5 @@
 // The results of sectors that are kept, and the maps for which each holds: the only cache, and the only place
-// that is asked whether a sector has to be baked. Evicts those used longest ago. Thread-safe.
+// that is asked which results there are. Evicts those used longest ago. Thread-safe.
 #pragma once
 
 #include "bakerd/farm/database.h"
@@ -35,6 +35,22 @@ struct CacheEntry {
     bool lost = false;                  // there were some, and their files are gone
 };
 
+class ResultCache;
+
+// What one plan goes by.
+class CachePin {
+  public:
+    explicit CachePin(ResultCache& cache) : cache_(cache) {}
+    ~CachePin();
+    CachePin(const CachePin&) = delete;
+    CachePin& operator=(const CachePin&) = delete;
+    void add(const Digest& file);
+
+  private:
+    ResultCache& cache_;
+    std::vector<Digest> files_;
+};
+
 class ResultCache {
   public:
     // REQUIRES: both outlive it.
@@ -43,10 +59,9 @@ class ResultCache {
     [[nodiscard]] store::Result<void> open();
 
     // One entry per sector. What an entry names is not evicted while `pin` lives.
-    class Pin;
     [[nodiscard]] store::Result<std::vector<CacheEntry>> find(std::span<const map::SectorCoordinate> sectors,
                                                               const CacheQuery& query,
-                                                              Pin& pin);
+                                                              CachePin& pin);
 
     // Mean of what sectors took with these settings, or with any when there are none; 0 without results.
     [[nodiscard]] store::Result<double> mean_seconds(const Digest& results_key);
@@ -56,12 +71,15 @@ class ResultCache {
     template <class Commit>
     [[nodiscard]] store::Result<void> commit_if_there(const worker::SectorResult& result, Commit commit) {
         const std::lock_guard lock(files_mutex_);
-        if (!blobs_.has(result.blobs.file) || !blobs_.has(result.blobs.footprint))
+        const worker::ResultBlobs& blobs = result.blobs;
+        if (!blobs_.has(blobs.file) || !blobs_.has(blobs.footprint) || !blobs_.has(blobs.inventory))
             return store::fail(store::ErrorCode::not_found, "its file left the store before it was recorded");
         return commit();
     }
     void added(const worker::SectorResult& result) { bytes_ += result.file_bytes + result.footprint_bytes; }
 
+    // A job has ended: what it held may go.
+    void job_ended() { needed_bytes_ = 0; }
     // Evicts what is over the limit.
     [[nodiscard]] store::Result<void> keep_to_limit();
     // Evicts all that no running job holds.
@@ -71,13 +89,18 @@ class ResultCache {
     [[nodiscard]] std::int64_t max_bytes() const { return max_bytes_; }
 
   private:
+    friend class CachePin;
     void take_in(Connection& connection,
                  const Checked<ResultRow>& found,
                  const CacheQuery& query,
                  CacheEntry& entry,
-                 Pin& pin);
+                 CachePin& pin);
     [[nodiscard]] store::Result<void> shrink_to(std::int64_t max_bytes);
-    [[nodiscard]] std::vector<ResultRow> remove_idle(Connection& connection, std::int64_t max_bytes);
+    struct Removed {
+        std::vector<ResultRow> rows;
+        std::size_t pinned = 0;  // that were passed over
+    };
+    [[nodiscard]] Removed remove_idle(Connection& connection, std::size_t skipped, std::int64_t max_bytes);
     [[nodiscard]] store::Result<void> remove_blobs(const std::vector<ResultRow>& rows);
     [[nodiscard]] bool is_pinned(const Digest& file);
 
@@ -85,23 +108,10 @@ class ResultCache {
     store::BlobStore& blobs_;
     const std::int64_t max_bytes_;
     std::atomic<std::int64_t> bytes_{0};
+    std::atomic<std::int64_t> needed_bytes_{0};  // that could not be evicted the last time; 0: it was enough
     std::mutex files_mutex_;  // held while blobs are removed, and while what needs them is recorded
     std::mutex pins_mutex_;
     std::map<Digest, int> pins_;  // guarded by pins_mutex_: files, and how many pins name each
-};
-
-// What one plan goes by.
-class ResultCache::Pin {
-  public:
-    explicit Pin(ResultCache& cache) : cache_(cache) {}
-    ~Pin();
-    Pin(const Pin&) = delete;
-    Pin& operator=(const Pin&) = delete;
-    void add(const Digest& file);
-
-  private:
-    ResultCache& cache_;
-    std::vector<Digest> files_;
 };
 
 }  // namespace drtv::farm

@@ -49,7 +49,8 @@ constexpr const char* last_use = "(SELECT value FROM counter WHERE name = 'uses'
 
 void insert_hold(Connection& connection, const HoldRow& hold) {
     SQLite::Statement& statement =
-        connection.statement(insert_into<HoldRow>("hold") + " ON CONFLICT DO NOTHING");
+        connection.statement(insert_into<HoldRow>("hold") +
+                             " ON CONFLICT DO UPDATE SET bound = excluded.bound, sum = excluded.sum");
     RowBinder binder(statement);
     columns(binder, hold);
     statement.exec();
@@ -92,6 +93,25 @@ void count_sectors(Connection& connection, std::int64_t hits, std::int64_t near_
     statement.exec();
 }
 
+std::vector<Checked<ResultRow>> results_that_hold(Connection& connection,
+                                                  map::SectorCoordinate sector,
+                                                  const Digest& results_key,
+                                                  const Digest& inventory) {
+    SQLite::Statement& statement = connection.statement(select_from<ResultRow>(
+        "result",
+        "JOIN hold ON hold.result = result.id WHERE i = ? AND j = ? AND results_key = ? AND "
+        "hold.inventory = ? ORDER BY used DESC",
+        ", id"));
+    statement.bind(1, sector.i);
+    statement.bind(2, sector.j);
+    statement.bind(3, to_hex(results_key));
+    statement.bind(4, to_hex(inventory));
+    std::vector<Checked<ResultRow>> rows;
+    while (statement.executeStep())
+        rows.push_back(read_row(statement));
+    return rows;
+}
+
 void for_each_result(Connection& connection,
                      map::SectorCoordinate sector,
                      const Digest& results_key,
@@ -122,18 +142,20 @@ std::optional<HoldRow> find_hold(Connection& connection, std::int64_t result, co
     return reader.sound() ? std::optional(hold) : std::nullopt;
 }
 
-std::vector<ResultRow> idle_results(Connection& connection, std::size_t max) {
-    SQLite::Statement& statement = connection.statement(select_from<ResultRow>(
-        "result",
-        "WHERE file NOT IN (SELECT file FROM job_sector JOIN job ON job.id = job_sector.job WHERE job.state "
-        "IN (?, ?)) ORDER BY used LIMIT ?",
-        ", id"));
+std::vector<Checked<ResultRow>> idle_results(Connection& connection, std::size_t skipped, std::size_t max) {
+    SQLite::Statement& statement = connection.statement(
+        select_from<ResultRow>("result",
+                               "WHERE NOT EXISTS (SELECT 1 FROM job_sector JOIN job ON job.id = "
+                               "job_sector.job WHERE job_sector.file "
+                               "= result.file AND job.state IN (?, ?)) ORDER BY used LIMIT ? OFFSET ?",
+                               ", id"));
     statement.bind(1, static_cast<std::int64_t>(JobState::running));
     statement.bind(2, static_cast<std::int64_t>(JobState::creating));
     statement.bind(3, static_cast<std::int64_t>(max));
-    std::vector<ResultRow> rows;
+    statement.bind(4, static_cast<std::int64_t>(skipped));
+    std::vector<Checked<ResultRow>> rows;
     while (statement.executeStep())
-        rows.push_back(read_row(statement).row);
+        rows.push_back(read_row(statement));
     return rows;
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "bakerd/farm/database.h"
-#include "bakerd/farm/job_table.h"
 #include "bakerd/farm/records.h"
 
 #include <cstddef>
@@ -14,21 +13,17 @@
 
 namespace drtv::farm {
 
-struct CacheCounts {
-    // Kept now: files and footprints.
-    std::int64_t results = 0;
-    std::int64_t bytes = 0;
-    // Sectors of all jobs since the database was made.
-    std::int64_t hits = 0;
-    std::int64_t near_hits = 0;
-    std::int64_t baked = 0;
-};
-
 // A new result, and that it holds for the map of which it was baked. It counts as the one used last.
 void insert_result(Connection& connection, const ResultRow& row);
 // That a job uses a result, which holds for its map.
 void use_result(Connection& connection, const HoldRow& hold);
 void count_sectors(Connection& connection, std::int64_t hits, std::int64_t near_hits, std::int64_t baked);
+
+// The results of a sector that are known to hold for the map.
+[[nodiscard]] std::vector<Checked<ResultRow>> results_that_hold(Connection& connection,
+                                                                map::SectorCoordinate sector,
+                                                                const Digest& results_key,
+                                                                const Digest& inventory);
 
 // Visits the results of a sector, the one used last first, as long as `visit` gives true.
 void for_each_result(Connection& connection,
@@ -41,8 +36,10 @@ void for_each_result(Connection& connection,
                                                std::int64_t result,
                                                const Digest& inventory);
 
-// Those used longest ago, without any that a running job holds.
-[[nodiscard]] std::vector<ResultRow> idle_results(Connection& connection, std::size_t max);
+// Those used longest ago, without any that a running job holds; behind the first `skipped`.
+[[nodiscard]] std::vector<Checked<ResultRow>> idle_results(Connection& connection,
+                                                           std::size_t skipped,
+                                                           std::size_t max);
 void remove_result(Connection& connection, std::int64_t id);
 // Whether a result or a running job has the blob as its file, footprint or inventory.
 [[nodiscard]] bool is_needed(Connection& connection, const Digest& blob);

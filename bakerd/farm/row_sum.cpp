@@ -16,8 +16,9 @@ void add_value(map::Hasher& hasher, sqlite3_value* value) {
     hasher.add(static_cast<std::int32_t>(type));
     if (type == SQLITE_INTEGER)
         hasher.add(static_cast<std::int64_t>(sqlite3_value_int64(value)));
+    // The database keeps no negative zero.
     if (type == SQLITE_FLOAT)
-        hasher.add(sqlite3_value_double(value));
+        hasher.add(sqlite3_value_double(value) + 0.0);
     if (type == SQLITE_TEXT || type == SQLITE_BLOB) {
         const auto* bytes = static_cast<const char*>(sqlite3_value_blob(value));
         const auto size = static_cast<std::size_t>(sqlite3_value_bytes(value));

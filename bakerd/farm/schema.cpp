@@ -60,12 +60,12 @@ CREATE TABLE map (
 CREATE TABLE map_sector (
   manifest TEXT NOT NULL, position INTEGER NOT NULL, i INTEGER NOT NULL, j INTEGER NOT NULL, sum INTEGER NOT NULL,
   PRIMARY KEY (manifest, position)) WITHOUT ROWID;
-INSERT INTO map
+INSERT OR IGNORE INTO map
   SELECT manifest, json_extract(summary, '$.content'), coalesce(json_extract(summary, '$.inventory'), ''),
     json_array_length(summary, '$.sectors'), json_extract(summary, '$.objects'), json_extract(summary, '$.triangles'),
     coalesce((SELECT group_concat(value, char(10)) FROM json_each(summary, '$.warnings')), ''), 0
   FROM map_4 WHERE json_valid(summary);
-INSERT INTO map_sector
+INSERT OR IGNORE INTO map_sector
   SELECT manifest, sector.key, json_extract(sector.value, '$[0]'), json_extract(sector.value, '$[1]'), 0
   FROM map_4, json_each(map_4.summary, '$.sectors') AS sector WHERE json_valid(summary);
 
@@ -89,10 +89,11 @@ CREATE TABLE job_sector (
   warnings TEXT NOT NULL, failed_attempts INTEGER NOT NULL, error TEXT NOT NULL, sum INTEGER NOT NULL,
   PRIMARY KEY (job, j, i)) WITHOUT ROWID;
 CREATE INDEX job_sector_of_file ON job_sector (file);
+CREATE INDEX job_sector_with_warnings ON job_sector (job, j, i) WHERE warnings != '';
 INSERT INTO job_sector
   SELECT job_task.job, i, j, state, result, size, probes, rays, bound, warnings, failed_attempts, error, 0
   FROM job_task JOIN task ON task.id = job_task.task;
-INSERT INTO job
+INSERT OR IGNORE INTO job
   SELECT id, coalesce(request_id, ''), manifest, coalesce((SELECT inventory FROM map WHERE manifest = job_4.manifest), ''),
     preset, json_extract(settings, '$.rays'), json_extract(settings, '$.bounces'), json_extract(settings, '$.reach'),
     json_extract(settings, '$.min_distance'), coalesce(json_extract(settings, '$.error'), 0),
@@ -102,13 +103,15 @@ INSERT INTO job
     iif(region = '', NULL, json_extract(region, '$[2]')), iif(region = '', NULL, json_extract(region, '$[3]')),
     state, error, 0, 0, 0, sectors_cached, sectors_near, 0, largest_bound, created * 1000, ended * 1000, 0
   FROM job_4 WHERE json_valid(settings) AND (region = '' OR json_valid(region));
+DELETE FROM job_sector WHERE job NOT IN (SELECT id FROM job);
 UPDATE job SET
   sectors_total = (SELECT count(*) FROM job_sector WHERE job = job.id),
   sectors_done = (SELECT count(*) FROM job_sector WHERE job = job.id AND state = 1),
   sectors_failed = (SELECT count(*) FROM job_sector WHERE job = job.id AND state = 2),
   probes = (SELECT coalesce(sum(probes), 0) FROM job_sector WHERE job = job.id AND state = 1);
 INSERT INTO job_override
-  SELECT job_4.id, entry.key, entry.value, 0 FROM job_4, json_each(job_4.overrides) AS entry WHERE json_valid(overrides);
+  SELECT job_4.id, entry.key, entry.value, 0 FROM job_4, json_each(job_4.overrides) AS entry WHERE json_valid(overrides)
+    AND job_4.id IN (SELECT id FROM job);
 
 ALTER TABLE result RENAME TO result_4;
 DROP INDEX result_of_sector;

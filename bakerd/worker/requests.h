@@ -85,6 +85,10 @@ struct Assessments {
     struct Change {
         std::string what;
         map::Bounds bounds;
+
+        bool operator==(const Change& other) const {
+            return what == other.what && bounds.low == other.bounds.low && bounds.high == other.bounds.high;
+        }
     };
     std::vector<Sector> sectors;        // in the order of the request
     std::vector<Change> changes;        // the first of them, without those that stand nowhere

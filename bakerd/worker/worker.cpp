@@ -77,14 +77,13 @@ class Worker {
     What bake(const BakeRequest& request, const LoadedMap& map) {
         const auto start = std::chrono::steady_clock::now();
         const trace::FloatMode float_mode;
-        std::vector<std::string> warnings;
         std::optional<reuse::EarlierBake> earlier;
         if (request.earlier) {
             auto read = read_earlier(*request.earlier, request.sector, request.settings, map, *store_);
             if (read)
                 earlier = std::move(*read);
             else
-                warnings.push_back(read.error());  // all of it is baked then
+                spdlog::warn("{}", read.error());  // all of it is baked then
         }
         auto rebake = reuse::bake_and_record(
             *map.world, request.sector, request.settings, earlier ? &*earlier : nullptr);
@@ -94,7 +93,6 @@ class Worker {
         const auto file = bake::encode_sector(baked.sector, baked.warnings);
         if (!file)
             return Failure{file.error(), false};
-        warnings.insert(warnings.end(), baked.warnings.begin(), baked.warnings.end());
         const std::vector<std::uint8_t> footprint = reuse::encode_footprint(rebake->footprint);
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
         const auto blobs = store_result(*file, footprint, map);
@@ -106,7 +104,7 @@ class Worker {
         result.footprint_bytes = static_cast<std::int64_t>(footprint.size());
         result.probes = static_cast<std::int64_t>(baked.sector.probes.size());
         result.rays = static_cast<std::int64_t>(baked.sector.statistics.rays);
-        result.warnings = std::move(warnings);
+        result.warnings = std::move(baked.warnings);
         result.seconds = time.count();
         result.bound = rebake->footprint.bound();
         return result;

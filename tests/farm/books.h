@@ -82,7 +82,7 @@ class BooksTest : public testing::Test {
     // With its blobs in the store.
     worker::SectorResult result(const std::string& file) {
         worker::SectorResult made;
-        made.blobs = {put(file), put(file + " footprint"), digest_of("inventory")};
+        made.blobs = {put(file), put(file + " footprint"), put("inventory")};
         made.file_bytes = 100;
         made.footprint_bytes = 20;
         made.probes = 10;

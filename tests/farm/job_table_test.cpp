@@ -76,8 +76,7 @@ TEST_F(JobTableTest, ASectorCountsOnceAndNotForAJobThatHasEnded) {
     const JobRow job = add_job({{0, 0}, {1, 0}});
     write([&](Connection& connection) {
         EXPECT_TRUE(record_sector(connection, done(job.id, {0, 0})));
-        EXPECT_FALSE(record_sector(connection, done(job.id, {0, 0})));
-        EXPECT_FALSE(record_sector(connection, done(job.id, {7, 7})));
+        EXPECT_EQ(record_sector(connection, done(job.id, {0, 0}))->sectors_done, 1);
         JobRow cancelled = find_job(connection, job.id)->row;
         cancelled.state = JobState::cancelled;
         update_job(connection, cancelled);
@@ -151,6 +150,23 @@ TEST_F(JobTableTest, ARowThatSomebodyElseChangedIsNotSound) {
     EXPECT_TRUE(sector(job.id, {1, 0}).sound);
 }
 
+TEST_F(JobTableTest, NegativeZeroIsKeptAsASoundZero) {
+    JobRow job;
+    job.region = Region{-0.0, -0.0, 1, 1};
+    job.settings.error = -0.0f;
+    write([&](Connection& connection) { insert_job(connection, job); });
+    EXPECT_TRUE(this->job(job.id).sound);
+}
+
+TEST_F(JobTableTest, ARequestWhoseJobWasNotWrittenWholeMayBeMadeAgain) {
+    for (int n = 0; n < 2; ++n) {
+        JobRow job;
+        job.request_id = "same";
+        write([&](Connection& connection) { insert_job(connection, job); });
+    }
+    EXPECT_EQ(read(all_jobs).size(), 1u);
+}
+
 TEST_F(JobTableTest, WhatWasNotWrittenWholeIsGoneAtTheNextStart) {
     const JobRow whole = add_job({{0, 0}});
     write([&](Connection& connection) {
@@ -160,7 +176,7 @@ TEST_F(JobTableTest, WhatWasNotWrittenWholeIsGoneAtTheNextStart) {
         insert_sectors(connection, std::vector{sector_row(job.id, {1, 1})});
     });
     EXPECT_EQ(read(all_jobs).size(), 2u);
-    write(remove_unfinished_jobs);
+    write([](Connection& connection) { remove_unfinished_jobs(connection); });
     const auto left = read(all_jobs);
     ASSERT_EQ(left.size(), 1u);
     EXPECT_EQ(left[0].row.id, whole.id);

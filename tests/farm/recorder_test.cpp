@@ -168,6 +168,34 @@ TEST_F(RecorderTest, AJobWhoseRowIsDamagedMeanwhileFailsAndDoesNotHang) {
     EXPECT_FALSE(book.next());
 }
 
+TEST_F(RecorderTest, AnEndIsFinalWhoeverTellsTheBookLast) {
+    JobRow job = add({{0, 0}, {1, 0}});
+    JobRow cancelled = job;
+    cancelled.state = JobState::cancelled;
+    book.update(cancelled);
+    book.update(job);  // a recorder that wrote before, and tells after
+    EXPECT_EQ(book.view(job.id)->row.state, JobState::cancelled);
+}
+
+TEST_F(RecorderTest, ASectorWhoseRowSomebodyElseChangedOrRemovedIsWrittenAllTheSame) {
+    const JobRow job = add({{0, 0}, {1, 0}});
+    change("UPDATE job_sector SET state = 1 WHERE i = 0");
+    change("DELETE FROM job_sector WHERE i = 1");
+    recorder->record(bake_next());
+    recorder->record(bake_next());
+    EXPECT_EQ(wait(job.id, has_ended).row.state, JobState::succeeded);
+    EXPECT_TRUE(sector(job.id, {0, 0}).sound);
+    EXPECT_EQ(sector(job.id, {1, 0}).row.file, digest_of("file 2"));
+}
+
+TEST_F(RecorderTest, ARestartFailsAJobOfWhichASectorIsMissing) {
+    const JobRow job = add({{0, 0}, {1, 0}});
+    change("DELETE FROM job_sector WHERE i = 1");
+    JobBook after;
+    ASSERT_TRUE(load_jobs(*database, after));
+    EXPECT_EQ(after.view(job.id)->row.state, JobState::failed);
+}
+
 TEST_F(RecorderTest, ARestartFailsAJobWhoseSettingsAreDamaged) {
     const JobRow job = add({{0, 0}});
     change("UPDATE job SET bounces = 1");

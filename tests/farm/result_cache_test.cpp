@@ -18,7 +18,7 @@ class ResultCacheTest : public BooksTest {
     }
     CacheEntry find(map::SectorCoordinate sector, const std::string& inventory = "inventory",
                     float tolerance = 0) {
-        ResultCache::Pin pin(*cache);
+        CachePin pin(*cache);
         const CacheQuery query{digest_of("settings"), digest_of(inventory), tolerance};
         return cache->find(std::vector{sector}, query, pin).value().at(0);
     }
@@ -40,7 +40,7 @@ TEST_F(ResultCacheTest, AResultHoldsForTheMapOfWhichItWasBaked) {
               std::tuple(100, 20, 1.5));
     EXPECT_FALSE(find({1, -1}).held);
     EXPECT_TRUE(find({1, -1}).candidates.empty());
-    ResultCache::Pin pin(*cache);
+    CachePin pin(*cache);
     const std::vector<map::SectorCoordinate> sectors{{1, -2}};
     EXPECT_FALSE(
         cache->find(sectors, {digest_of("other settings"), digest_of("inventory"), 0}, pin)->at(0).held);
@@ -58,6 +58,14 @@ TEST_F(ResultCacheTest, OfAnotherMapItIsACandidateUntilItIsKnownToHold) {
     const CacheEntry near = find({0, 0}, "new map", 0.01f);
     ASSERT_TRUE(near.held);
     EXPECT_EQ(std::tuple(near.held->result.blobs.file, near.bound), std::tuple(digest_of("a"), 0.01f));
+}
+
+TEST_F(ResultCacheTest, OneThatHoldsIsFoundBehindAnyNumberOfOthers) {
+    add({0, 0}, "first");
+    for (int n = 0; n < 20; ++n)
+        add({0, 0}, std::to_string(n), "map " + std::to_string(n));
+    ASSERT_TRUE(find({0, 0}).held);
+    EXPECT_EQ(find({0, 0}).held->result.blobs.file, digest_of("first"));
 }
 
 TEST_F(ResultCacheTest, WithoutItsFileItIsLost) {
@@ -124,7 +132,7 @@ TEST_F(ResultCacheTest, WhatARunningJobOrAPlanHoldsStays) {
         EXPECT_TRUE(record_sector(connection, row));
     });
     {
-        ResultCache::Pin pin(*cache);
+        CachePin pin(*cache);
         pin.add(digest_of("1"));
         ASSERT_TRUE(cache->clear());
         EXPECT_TRUE(find({0, 0}).held);

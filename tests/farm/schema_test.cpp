@@ -117,7 +117,7 @@ class LastSchemas : public SchemaTest {
             std::filesystem::create_directories(folder.path() + "/objects/" + hex.substr(0, 2));
             test::write_file(folder.path() + "/objects/" + hex.substr(0, 2) + "/" + hex, "");
         }
-        ResultCache::Pin pin(cache);
+        CachePin pin(cache);
         const Digest key = map::digest_from_hex(first_key).value();
         return cache.find(sectors, {key, inventory, 1 / 512.0f}, pin).value();
     }
