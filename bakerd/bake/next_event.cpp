@@ -59,19 +59,14 @@ std::optional<Incident> NextEvent::draw(const glm::vec3& from,
     const bool mirrored = glm::determinant(glm::mat3(object.world_from_object)) < 0;
     const float u_weight = mirrored ? weight_c : weight_b;
     const float v_weight = mirrored ? weight_b : weight_c;
-    if (!trace::is_there(lights_.map(), primitive, triangle.triangle, u_weight, v_weight))
+    const trace::TrianglePoint on_light{lights_.map(), primitive, triangle.triangle, u_weight, v_weight};
+    if (!trace::is_there(on_light))
         return std::nullopt;
     const float magnitude = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), 1.0f});
     Incident incident{direction, glm::vec3(0), point, distance_m, magnitude * 0x1p-20f / std::abs(cosine), 0};
     incident.density =
         drawn.probability * triangle.share * 2 / double_area_m2 * distance_m * distance_m / std::abs(cosine);
-    incident.light = trace::emission_at(lights_.map(),
-                                        primitive,
-                                        triangle.triangle,
-                                        u_weight,
-                                        v_weight,
-                                        double_area_m2,
-                                        distance_m * first_footprint) /
+    incident.light = trace::emission_at(on_light, {double_area_m2, distance_m * first_footprint}) /
                      (lumens_per_watt * incident.density * drawn.survival);
     return incident;
 }

@@ -63,11 +63,11 @@ void resolve(Candidate& hit, const Query& query, const Ray& ray) {
 }
 
 bool is_there(const Candidate& hit) {
-    return !hit.set->mixed || trace::is_there(*hit.set->map,
-                                              *hit.set->primitive,
-                                              hit.set->triangle_of(hit.id.triangle),
-                                              hit.at->u,
-                                              hit.at->v);
+    return !hit.set->mixed || trace::is_there({*hit.set->map,
+                                               *hit.set->primitive,
+                                               hit.set->triangle_of(hit.id.triangle),
+                                               hit.at->u,
+                                               hit.at->v});
 }
 
 // Of two at the same distance the one of the smaller id is nearer.

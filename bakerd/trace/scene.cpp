@@ -109,7 +109,7 @@ Surface Scene::surface(const Hit& hit, float footprint_m) const {
     const map::Role role = instances_[hit.instance].role;
     const auto of = [&](const map::Map& map, const map::Primitive& primitive) {
         return surface_at(
-            map, primitive, role, hit.triangle, hit.u, hit.v, hit.front, hit.double_area_m2, footprint_m);
+            {map, primitive, hit.triangle, hit.u, hit.v}, role, hit.front, {hit.double_area_m2, footprint_m});
     };
     // What the hit knows already is not looked up again: in a large map that is far away in memory.
     if (hit.set != nullptr)

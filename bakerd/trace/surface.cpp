@@ -19,8 +19,9 @@ namespace drtv::trace {
 namespace {
 
 template <class Value>
-Value interpolate(const std::vector<Value>& values, const glm::uvec3& t, float u, float v) {
-    return values[t.x] * (1 - u - v) + values[t.y] * u + values[t.z] * v;
+Value interpolate(const std::vector<Value>& values, const TrianglePoint& point) {
+    const glm::uvec3& t = point.corners();
+    return values[t.x] * (1 - point.u - point.v) + values[t.y] * point.u + values[t.z] * point.v;
 }
 
 glm::vec2 viewed(const map::TextureView& view, const glm::vec2& uv) {
@@ -36,13 +37,12 @@ constexpr float texels_a_triangle = 16;
 // triangle.
 std::uint32_t mip_level(const map::Texture& texture,
                         const std::array<glm::vec2, 3>& uvs,
-                        float double_area_m2,
-                        float footprint_m) {
+                        const Footprint& footprint) {
     const glm::vec2 a = uvs[1] - uvs[0];
     const glm::vec2 b = uvs[2] - uvs[0];
     const float double_texels = std::abs(a.x * b.y - a.y * b.x) * static_cast<float>(texture.width) *
                                 static_cast<float>(texture.height);
-    const float ratio = std::min(footprint_m * footprint_m / double_area_m2,
+    const float ratio = std::min(footprint.width_m * footprint.width_m / footprint.double_area_m2,
                                  1 / (2 * texels_a_triangle * texels_a_triangle)) *
                         double_texels;
     if (!(ratio > 1))
@@ -50,19 +50,16 @@ std::uint32_t mip_level(const map::Texture& texture,
     return ((std::bit_cast<std::uint32_t>(ratio) >> 23) - 127 + 1) / 2;  // half the logarithm, rounded
 }
 
-glm::vec3 filtered(const map::Map& map,
+glm::vec3 filtered(const TrianglePoint& point,
                    const map::TextureView& view,
                    const std::vector<glm::vec2>& uvs,
-                   const glm::uvec3& t,
-                   float u,
-                   float v,
-                   float double_area_m2,
-                   float footprint_m) {
-    const map::Texture& texture = map.textures[view.texture];
+                   const Footprint& footprint) {
+    const map::Texture& texture = point.map.textures[view.texture];
+    const glm::uvec3& t = point.corners();
     const std::array<glm::vec2, 3> corners = {
         viewed(view, uvs[t.x]), viewed(view, uvs[t.y]), viewed(view, uvs[t.z])};
-    const glm::vec2 at = corners[0] * (1 - u - v) + corners[1] * u + corners[2] * v;
-    return map::sample_filtered(texture, at, mip_level(texture, corners, double_area_m2, footprint_m));
+    const glm::vec2 at = corners[0] * (1 - point.u - point.v) + corners[1] * point.u + corners[2] * point.v;
+    return map::sample_filtered(texture, at, mip_level(texture, corners, footprint));
 }
 
 bool is_leaf(const map::Material& material, map::Role role) {
@@ -71,38 +68,37 @@ bool is_leaf(const map::Material& material, map::Role role) {
 }
 
 // In [0, 1), from the point's bits.
-float coin_at(std::uint32_t triangle, float u, float v) {
+float coin_at(const TrianglePoint& point) {
     const std::uint64_t place =
-        std::uint64_t{std::bit_cast<std::uint32_t>(u)} << 32 | std::bit_cast<std::uint32_t>(v);
-    const std::uint64_t bits = map::mixed_bits(place + 0x9E3779B97F4A7C15u * (std::uint64_t{triangle} + 1));
+        std::uint64_t{std::bit_cast<std::uint32_t>(point.u)} << 32 | std::bit_cast<std::uint32_t>(point.v);
+    const std::uint64_t bits =
+        map::mixed_bits(place + 0x9E3779B97F4A7C15u * (std::uint64_t{point.triangle} + 1));
     return static_cast<float>(bits >> 40) * 0x1p-24f;
 }
 
 }  // namespace
 
-float alpha_at(
-    const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v) {
-    const map::Material& material = map.materials[primitive.material];
-    const glm::uvec3& t = primitive.triangles[triangle];
+float alpha_at(const TrianglePoint& point) {
+    const map::Primitive& primitive = point.primitive;
+    const map::Material& material = point.material();
     float alpha = material.base_colour.w;
     if (!primitive.colours.empty())
-        alpha *= interpolate(primitive.colours, t, u, v).w;
+        alpha *= interpolate(primitive.colours, point).w;
     if (material.base_texture.present())
-        alpha *= map::sample_alpha(map.textures[material.base_texture.texture],
-                                   viewed(material.base_texture, interpolate(primitive.uvs, t, u, v)));
+        alpha *= map::sample_alpha(point.map.textures[material.base_texture.texture],
+                                   viewed(material.base_texture, interpolate(primitive.uvs, point)));
     return alpha;
 }
 
-bool is_there(
-    const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v) {
-    const map::Material& material = map.materials[primitive.material];
+bool is_there(const TrianglePoint& point) {
+    const map::Material& material = point.material();
     switch (material.alpha_mode) {
         case map::AlphaMode::opaque:
             return true;
         case map::AlphaMode::mask:
-            return alpha_at(map, primitive, triangle, u, v) >= material.alpha_cutoff;
+            return alpha_at(point) >= material.alpha_cutoff;
         case map::AlphaMode::blend:
-            return alpha_at(map, primitive, triangle, u, v) > coin_at(triangle, u, v);
+            return alpha_at(point) > coin_at(point);
     }
     return true;
 }
@@ -185,45 +181,25 @@ float most_scattered(const map::Map& map) {
     return most;
 }
 
-glm::vec3 emission_at(const map::Map& map,
-                      const map::Primitive& primitive,
-                      std::uint32_t triangle,
-                      float u,
-                      float v,
-                      float double_area_m2,
-                      float footprint_m) {
-    const map::Material& material = map.materials[primitive.material];
+glm::vec3 emission_at(const TrianglePoint& point, const Footprint& footprint) {
+    const map::Material& material = point.material();
     if (!material.emission_texture.present())
         return material.emission;
-    return material.emission * filtered(map,
-                                        material.emission_texture,
-                                        primitive.emission_uvs,
-                                        primitive.triangles[triangle],
-                                        u,
-                                        v,
-                                        double_area_m2,
-                                        footprint_m);
+    return material.emission *
+           filtered(point, material.emission_texture, point.primitive.emission_uvs, footprint);
 }
 
-Surface surface_at(const map::Map& map,
-                   const map::Primitive& primitive,
-                   map::Role role,
-                   std::uint32_t triangle,
-                   float u,
-                   float v,
-                   bool front,
-                   float double_area_m2,
-                   float footprint_m) {
-    const map::Material& material = map.materials[primitive.material];
+Surface surface_at(const TrianglePoint& point, map::Role role, bool front, const Footprint& footprint) {
+    const map::Primitive& primitive = point.primitive;
+    const map::Material& material = point.material();
     if (!front && !is_two_sided(material, role))
         return {true, glm::vec3(0), glm::vec3(0), glm::vec3(0)};
 
-    const glm::uvec3& t = primitive.triangles[triangle];
     glm::vec3 colour(material.base_colour);
     if (!primitive.colours.empty())
-        colour *= glm::vec3(interpolate(primitive.colours, t, u, v));
+        colour *= glm::vec3(interpolate(primitive.colours, point));
     if (material.base_texture.present())
-        colour *= filtered(map, material.base_texture, primitive.uvs, t, u, v, double_area_m2, footprint_m);
+        colour *= filtered(point, material.base_texture, primitive.uvs, footprint);
     Surface surface;
     surface.albedo = glm::clamp(colour, 0.0f, map::max_albedo);
     if (material.transmission > 0) {
@@ -240,7 +216,7 @@ Surface surface_at(const map::Map& map,
         surface.transmitted[k] *= map::max_albedo / total[k];
     }
     if (material.emission != glm::vec3(0) && (front || material.double_sided))
-        surface.emission = emission_at(map, primitive, triangle, u, v, double_area_m2, footprint_m);
+        surface.emission = emission_at(point, footprint);
     return surface;
 }
 

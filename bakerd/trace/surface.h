@@ -24,15 +24,30 @@ inline constexpr float leaf_transmission = 0.5f;
     return role == map::Role::vegetation || material.double_sided || material.transmission > 0;
 }
 
-// Barycentric u, v weigh the triangle's second and third vertex.
-[[nodiscard]] float alpha_at(
-    const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
+// A point of a mesh's triangle. Barycentric u, v weigh its second and third vertex.
+struct TrianglePoint {
+    const map::Map& map;
+    const map::Primitive& primitive;
+    std::uint32_t triangle;  // of the primitive
+    float u;
+    float v;
+
+    [[nodiscard]] const map::Material& material() const { return map.materials[primitive.material]; }
+    [[nodiscard]] const glm::uvec3& corners() const { return primitive.triangles[triangle]; }
+};
+
+// How a point is looked at.
+struct Footprint {
+    float double_area_m2;  // twice the triangle's area in the world
+    float width_m;         // over which textures are averaged
+};
+
+[[nodiscard]] float alpha_at(const TrianglePoint& point);
 
 // Whether the surface is there: opaque ones are, masked ones by their cutoff, blended ones with the
 // probability of their alpha, by a hash of the point: at another point the coin falls anew, at the same one
 // never.
-[[nodiscard]] bool is_there(
-    const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle, float u, float v);
+[[nodiscard]] bool is_there(const TrianglePoint& point);
 
 enum class Presence : std::uint8_t { nowhere, mixed, whole };
 
@@ -41,17 +56,11 @@ enum class Presence : std::uint8_t { nowhere, mixed, whole };
                                    const map::Primitive& primitive,
                                    std::uint32_t triangle);
 
-// `double_area_m2` is twice the triangle's area in the world, `footprint_m` the width over which textures are
-// averaged.
-[[nodiscard]] Surface surface_at(const map::Map& map,
-                                 const map::Primitive& primitive,
+// `front`: seen from there.
+[[nodiscard]] Surface surface_at(const TrianglePoint& point,
                                  map::Role role,
-                                 std::uint32_t triangle,
-                                 float u,
-                                 float v,
                                  bool front,
-                                 float double_area_m2,
-                                 float footprint_m);
+                                 const Footprint& footprint);
 
 // A bound on the share of light that any surface of the map's objects passes on, to both sides together and
 // in whichever channels are most: no step of a path (bake::scatter) multiplies what it brings by more. Below
@@ -60,12 +69,6 @@ inline constexpr float least_scattered = 1 / 16.0f;
 [[nodiscard]] float most_scattered(const map::Map& map);
 
 // Radiance of the triangle's front at a point, nits; as surface_at has it.
-[[nodiscard]] glm::vec3 emission_at(const map::Map& map,
-                                    const map::Primitive& primitive,
-                                    std::uint32_t triangle,
-                                    float u,
-                                    float v,
-                                    float double_area_m2,
-                                    float footprint_m);
+[[nodiscard]] glm::vec3 emission_at(const TrianglePoint& point, const Footprint& footprint);
 
 }  // namespace drtv::trace

@@ -45,7 +45,7 @@ struct Skin {
     }
     map::Material& material() { return map.materials[0]; }
     [[nodiscard]] bool there(std::uint32_t triangle, float u, float v) const {
-        return trace::is_there(map, primitive, triangle, u, v);
+        return trace::is_there({map, primitive, triangle, u, v});
     }
 };
 
@@ -143,7 +143,7 @@ TEST(Presence, OfAMaskedPictureUnderAFactorOfZeroIsNowhere) {
     const map::Primitive& primitive = imported->meshes.at(0).primitives.at(0);
     ASSERT_FALSE(imported->textures.at(0).alpha_blocks.empty()) << "presence_of would read past their end";
     EXPECT_EQ(trace::presence_of(*imported, primitive, 0), Presence::nowhere);
-    EXPECT_FALSE(trace::is_there(*imported, primitive, 0, 0.25f, 0.25f));
+    EXPECT_FALSE(trace::is_there({*imported, primitive, 0, 0.25f, 0.25f}));
 }
 
 TEST(BlendedCoin, FallsTheSameWayAtTheSamePoint) {
@@ -226,10 +226,10 @@ Expected first_there(const trace::Scene& opaque, const map::Map& masked, trace::
         const auto hit = opaque.closest(ray);
         if (!hit)
             return expected;
-        const float alpha = trace::alpha_at(masked, primitive, hit->triangle, hit->u, hit->v);
+        const float alpha = trace::alpha_at({masked, primitive, hit->triangle, hit->u, hit->v});
         if (std::abs(alpha - masked.materials[primitive.material].alpha_cutoff) < alpha_edge)
             expected.sure = false;
-        if (trace::is_there(masked, primitive, hit->triangle, hit->u, hit->v)) {
+        if (trace::is_there({masked, primitive, hit->triangle, hit->u, hit->v})) {
             expected.hit = hit;
             expected.distance_m = gone_m + hit->distance_m;
             return expected;

@@ -26,7 +26,7 @@ struct Skin {
     }
     map::Material& material() { return map.materials[0]; }
     [[nodiscard]] Surface at(bool front, Role role = Role::fixed, float u = 0.25f, float v = 0.25f) const {
-        return trace::surface_at(map, primitive, role, 0, u, v, front, 1, 0);
+        return trace::surface_at({map, primitive, 0, u, v}, role, front, {1, 0});
     }
 };
 
@@ -168,8 +168,8 @@ TEST(MostScattered, NoSurfaceScattersMore) {
         for (int k = 0; k < 40; ++k) {
             const float u = k < 3 ? static_cast<float>(k == 1) : between(random, 0, 0.5f),
                         v = k < 3 ? static_cast<float>(k == 2) : between(random, 0, 0.5f);
-            const Surface surface = trace::surface_at(skin.map, skin.primitive, object.role, 0, u, v, true,
-                                                      100, k % 2 == 0 ? 0 : between(random, 0, 30));
+            const Surface surface = trace::surface_at({skin.map, skin.primitive, 0, u, v}, object.role, true,
+                                                      {100, k % 2 == 0 ? 0 : between(random, 0, 30)});
             seen = std::max(
                 seen, std::max({surface.albedo.x, surface.albedo.y, surface.albedo.z}) +
                           std::max({surface.transmitted.x, surface.transmitted.y, surface.transmitted.z}));
@@ -224,7 +224,7 @@ TEST(SurfaceEmission, IsFactorTimesPictureAtItsOwnCoordinates) {
     expect_near(skin.at(true, Role::fixed, 0, 0).emission, {3, 2, 1}, rounding);
     expect_near(skin.at(true, Role::fixed, 1, 0).emission, {0, 0, 0}, rounding);
     expect_near(skin.at(true, Role::fixed, 0.5f, 0.25f).emission, {1.5f, 1, 0.5f}, rounding);
-    expect_near(trace::emission_at(skin.map, skin.primitive, 0, 0.5f, 0.25f, 1, 0), {1.5f, 1, 0.5f},
+    expect_near(trace::emission_at({skin.map, skin.primitive, 0, 0.5f, 0.25f}, {1, 0}), {1.5f, 1, 0.5f},
                 rounding);
     skin.material().emission_texture.u_from_uv = {1, 0, -1};
     expect_near(skin.at(true, Role::fixed, 1, 0).emission, {3, 2, 1}, rounding);
@@ -244,8 +244,8 @@ TEST(SurfaceFootprint, AveragesThePictureButNeverMoreThanAPartOfTheTriangle) {
     skin.primitive.uvs = {{0, 0}, {1, 0}, {0, 1}};
     const auto albedo = [&](float footprint_m, float v) {
         // Right between two texels of one stripe, a white one.
-        return trace::surface_at(skin.map, skin.primitive, Role::fixed, 0, 67 / 256.0f, v, true, 100,
-                                 footprint_m)
+        return trace::surface_at({skin.map, skin.primitive, 0, 67 / 256.0f, v}, Role::fixed, true,
+                                 {100, footprint_m})
             .albedo.x;
     };
     EXPECT_NEAR(albedo(0, 0.3f), 0.5f, rounding);
