@@ -109,9 +109,10 @@ std::vector<std::int64_t> JobBook::leave(std::uint64_t id, std::span<const std::
         task.jobs.erase(job_id);
         jobs_.at(job_id).tasks.erase(task.key.sector);
     }
-    if (task.jobs.empty())
+    const std::vector<std::int64_t> left(task.jobs.begin(), task.jobs.end());
+    if (left.empty())
         forget(id);
-    return {task.jobs.begin(), task.jobs.end()};
+    return left;
 }
 
 void JobBook::put_back(std::uint64_t id) {
