@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tests of placement, trace and bake on QEMU's CPU instead of this one (some 200 times slower).
+# The tests of placement, trace, bake and reuse on QEMU's CPU instead of this one (some 200 times slower).
 #   tests/cpu/run_tests.sh FOLDER_OF_TESTS [--gtest_...]
 set -euo pipefail
 
@@ -9,7 +9,7 @@ shift
 export DRTV_LEAK_RAYS=${DRTV_LEAK_RAYS:-2000}
 shards=$(nproc)
 status=0
-for test in placement_test trace_test bake_test; do
+for test in placement_test trace_test bake_test reuse_test; do
   pids=()
   for shard in $(seq 0 $((shards - 1))); do
     GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard qemu-x86_64 -cpu max "$folder/$test" --gtest_brief=1 "$@" &
