@@ -5,8 +5,8 @@ set -euo pipefail
 
 folder=${1:?"usage: run_tests.sh FOLDER_OF_TESTS, as build/ci/tests"}
 shift
-# Rays at edges and vertices: a thousandth of what the tests take on a real CPU.
-export DRTV_LEAK_RAYS=${DRTV_LEAK_RAYS:-2000}
+# Fewer rays at edges and vertices, and fewer edits one after the other, than on a real CPU.
+export DRTV_LEAK_RAYS=${DRTV_LEAK_RAYS:-2000} DRTV_TEST_EDITS=${DRTV_TEST_EDITS:-2}
 shards=$(nproc)
 status=0
 for test in placement_test trace_test bake_test reuse_test; do

@@ -9,12 +9,19 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <random>
 
 namespace drtv::test {
 namespace {
+
+// A soak asks for more with DRTV_TEST_EDITS, QEMU for fewer; see CONTRIBUTING.
+int edits_or(int number) {
+    const char* asked = std::getenv("DRTV_TEST_EDITS");
+    return asked == nullptr ? number : std::atoi(asked);
+}
 
 // A yard of 3 x 3 sectors that can be edited: everything in it by name.
 struct Yard {
@@ -201,7 +208,7 @@ TEST_P(RandomEdits, HoldWhatIsPromised) {
     std::mt19937 random(GetParam());
     Yard yard(GetParam(), GetParam() % 2 == 0);
     const bake::Settings settings = settings_of_yard(64, GetParam() % 4 == 1, GetParam() % 3 == 0 ? 0 : 3);
-    for (int n = 0; n < 4; ++n) {
+    for (int n = 0; n < edits_or(4); ++n) {
         Yard edited = yard;
         const std::string what = "seed " + std::to_string(GetParam()) + ", edit " + std::to_string(n) + ": " +
                                  edit(edited, random);
@@ -228,7 +235,9 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
     };
     std::map<map::SectorCoordinate, State> states;
     std::size_t taken_over = 0, baked_again = 0, off = 0;
-    for (int n = 0; n < 8; ++n) {
+    constexpr int whole_chain = 7;
+    const int edits = edits_or(whole_chain);
+    for (int n = 0; n <= edits; ++n) {
         const std::string what = "seed " + std::to_string(GetParam()) + ", " + std::to_string(n) + ": " +
                                  (n == 0 ? "" : edit(yard, random));
         const auto world = open_world(yard.build());
@@ -274,6 +283,8 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
             }
         }
     }
+    if (edits < whole_chain)  // a few edits may leave nothing to take over
+        return;
     EXPECT_GT(taken_over, 0u);
     EXPECT_GT(baked_again, 0u);
     EXPECT_EQ(off > 0, tolerance > 0);
