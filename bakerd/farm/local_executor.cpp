@@ -115,8 +115,8 @@ void LocalExecutor::run() {
 }
 
 void LocalExecutor::handle(const Event& event) {
-    if (event.worker != worker_number_)
-        return;  // the last words of one that has been replaced
+    if (!worker_ || event.worker != worker_number_)
+        return;  // the last words of one that is no longer ours
     if (const auto* answer = std::get_if<worker::Answer>(&event.what))
         handle_answer(*answer);
     else
@@ -241,8 +241,7 @@ void LocalExecutor::send(Request request) {
         last_news_ = std::chrono::steady_clock::now();
     const std::uint64_t id = next_id_++;
     const auto [entry, added] = in_flight_.emplace(id, std::move(request));
-    // A failed write means the worker has died; its death is on its way and finds the request in flight.
-    static_cast<void>(worker_->send({id, entry->second.what}));
+    worker_->send({id, entry->second.what});
 }
 
 }  // namespace drtv::farm

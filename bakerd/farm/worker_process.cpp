@@ -80,25 +80,55 @@ WorkerProcess::WorkerProcess(pid_t pid,
       input_(std::move(input)),
       output_(std::move(output)),
       events_(std::move(events)),
-      reader_([this] { read_answers(); }) {}
+      reader_([this] { read_answers(); }),
+      writer_([this] { write_requests(); }) {}
 
 WorkerProcess::~WorkerProcess() {
-    ::kill(pid_, SIGKILL);
+    {
+        const std::lock_guard lock(mutex_);
+        ending_ = true;
+    }
+    changed_.notify_all();
+    ::kill(pid_, SIGKILL);  // ends a read and a write that wait for the worker
     reader_.join();
+    writer_.join();
     // Reaped here and not by the reader, so that the number cannot go to another process before the kill
     // above.
     ::waitpid(pid_, nullptr, 0);
 }
 
-bool WorkerProcess::send(const worker::Request& request) {
-    const std::string text = worker::encode(request) + "\n";
-    for (std::size_t at = 0; at < text.size();) {
-        const ssize_t n = ::write(input_.get(), text.data() + at, text.size() - at);
+void WorkerProcess::send(const worker::Request& request) {
+    std::string text = worker::encode(request) + "\n";
+    {
+        const std::lock_guard lock(mutex_);
+        to_write_.push_back(std::move(text));
+    }
+    changed_.notify_all();
+}
+
+void WorkerProcess::write_requests() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        changed_.wait(lock, [this] { return ending_ || !to_write_.empty(); });
+        if (ending_)
+            return;
+        const std::string text = std::move(to_write_.front());
+        to_write_.pop_front();
+        lock.unlock();
+        if (!write_all(text))
+            return;
+        lock.lock();
+    }
+}
+
+bool WorkerProcess::write_all(std::string_view text) const {
+    while (!text.empty()) {
+        const ssize_t n = ::write(input_.get(), text.data(), text.size());
         if (n < 0 && errno == EINTR)
             continue;
         if (n <= 0)
             return false;
-        at += static_cast<std::size_t>(n);
+        text.remove_prefix(static_cast<std::size_t>(n));
     }
     return true;
 }

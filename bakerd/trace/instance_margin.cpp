@@ -30,7 +30,7 @@ float instance_margin_m(const map::Map& map) {
 std::optional<InstanceShape> instance_shape(const glm::mat4x3& world_from_object, float margin_m) {
     constexpr float largest_spread = 0x1p10f;
     constexpr float least_stretch = 0x1p-4f;
-    glm::vec3 lengths;
+    glm::vec3 lengths{};
     glm::mat3 axes;
     for (glm::length_t k = 0; k < 3; ++k) {
         lengths[k] = glm::length(world_from_object[k]);

@@ -1,7 +1,7 @@
 // Speaks the worker's protocol. `argv[1]` is how it behaves as a whole, a sector's `i` how it treats the
 // request:
 //
-//     fake_worker normal | gate FILE | die_at_start | garbage | close_output | reverse N
+//     fake_worker normal | gate FILE | die_at_start | deaf | garbage | close_output | reverse N
 #include "bakerd/worker/protocol.h"
 
 #include <unistd.h>
@@ -98,6 +98,8 @@ int main(int argc, char** argv) {
     const std::string mode = argc > 1 ? argv[1] : "normal";
     if (mode == "die_at_start")
         return 4;
+    if (mode == "deaf")
+        ::sleep(60);
     if (mode == "close_output")
         ::close(STDOUT_FILENO);
     if (mode == "gate" && argc > 2)

@@ -245,7 +245,10 @@ TEST_F(LocalExecutorTest, StopWaitsForWhatIsInFlightAndStartsNothing) {
     // A question is refused from the moment on that the stop has begun; the gate opens only then.
     while (executor->inspect({{}}).wait_for(2ms) != std::future_status::ready) {
     }
-    EXPECT_TRUE(outcomes.empty());
+    {
+        const std::lock_guard lock(mutex);
+        EXPECT_TRUE(outcomes.empty());
+    }
     test::write_file(gate, "open");
     stopping.join();
     EXPECT_EQ(outcomes.size(), 3u);
@@ -292,6 +295,25 @@ TEST_F(LocalExecutorTest, SectorThatHangsTheWorkerFailsAloneAndTheRestGoesOn) {
         else
             expect_baked(id);
     }
+}
+
+// More than a pipe holds, to a worker that does not read.
+TEST_F(LocalExecutorTest, WorkerThatDoesNotReadHoldsNobodyUp) {
+    stall_limit = 200ms;
+    start_fake("deaf");
+    worker::AssessRequest request;
+    request.sectors.resize(10000);
+    auto given_up = executor->assess(request);
+    ASSERT_EQ(given_up.wait_for(long_enough), std::future_status::ready);
+    EXPECT_NE(given_up.get().error().sentence.find("gave no sign"), std::string::npos);
+
+    executor.reset();
+    stall_limit = std::chrono::minutes(30);
+    start_fake("deaf");
+    auto refused = executor->assess(request);
+    executor->stop(100ms);
+    ASSERT_EQ(refused.wait_for(0s), std::future_status::ready);
+    EXPECT_EQ(refused.get().error().sentence, "the server is stopping");
 }
 
 }  // namespace
