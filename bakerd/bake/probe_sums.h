@@ -48,7 +48,8 @@ class ProbeSums {
     // As IntegrationSettings::error has it.
     [[nodiscard]] double error(std::uint32_t paths, bool with_static_light) const;
 
-    // Sets `light`'s transfer, visibility and static irradiance.
+    // REQUIRES: the transfer of `light` is zero, its paths are counted.
+    // Sets its transfer (the bounced sky), visibility and static irradiance.
     void store(ProbeLight& light) const;
 
   private:

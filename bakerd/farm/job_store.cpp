@@ -16,13 +16,16 @@ namespace {
 // Sectors that are written in one go while others wait.
 constexpr std::size_t portion = 1000;
 
-JobSectorRow row_of(const PlannedSector& planned, std::int64_t job) {
-    if (planned.reused)
-        return done_row(job, planned.sector, planned.reused->result, planned.bound);
+JobSectorRow waiting_row(std::int64_t job, map::SectorCoordinate sector) {
     JobSectorRow row;
     row.job = job;
-    row.sector = planned.sector;
+    row.sector = sector;
     return row;
+}
+
+JobSectorRow row_of(const PlannedSector& planned, std::int64_t job) {
+    return planned.reused ? done_row(job, planned.sector, planned.reused->result, planned.bound)
+                          : waiting_row(job, planned.sector);
 }
 
 void count_reused(const PlannedSector& planned, JobRow& job) {
@@ -56,7 +59,7 @@ void recount(Connection& connection, std::span<Checked<JobSectorRow>> sectors, J
                          job.id,
                          sector.row.sector.i,
                          sector.row.sector.j);
-            sector.row = {job.id, sector.row.sector, SectorState::waiting, {}, 0, 0, 0, 0, {}, 0, ""};
+            sector.row = waiting_row(job.id, sector.row.sector);
             replace_sector(connection, sector.row);
         }
         counted.sectors_done += sector.row.state == SectorState::done ? 1 : 0;

@@ -35,12 +35,12 @@ void LocalExecutor::stop(std::chrono::milliseconds patience) {
     thread_.join();
     worker_.reset();
     // Nobody waits for an answer that cannot come.
-    const auto refuse = [](Request& request) {
-        if (request.answer)
-            request.answer(stopping);
+    const auto refuse = [](Work& work) {
+        if (work.answer)
+            work.answer(stopping);
     };
-    for (auto& [id, request] : in_flight_)
-        refuse(request);
+    for (auto& [id, work] : in_flight_)
+        refuse(work);
     std::for_each(again_.begin(), again_.end(), refuse);
     const std::lock_guard lock(mutex_);
     std::for_each(questions_.begin(), questions_.end(), refuse);
@@ -58,29 +58,29 @@ void LocalExecutor::wake() {
 }
 
 template <class Answer>
-std::future<Reply<Answer>> LocalExecutor::ask(Question question) {
+std::future<Reply<Answer>> LocalExecutor::ask(What question) {
     const auto promise = std::make_shared<std::promise<Reply<Answer>>>();
-    Request request;
-    request.what = std::move(question);
-    request.answer = [promise](Outcome outcome) { promise->set_value(reply_of<Answer>(std::move(outcome))); };
+    Work work;
+    work.what = std::move(question);
+    work.answer = [promise](Outcome outcome) { promise->set_value(reply_of<Answer>(std::move(outcome))); };
     {
         const std::lock_guard lock(mutex_);
         if (draining_ || stopping_)
-            request.answer(stopping);
+            work.answer(stopping);
         else
-            questions_.push_back(std::move(request));
+            questions_.push_back(std::move(work));
         woken_ = true;
     }
     changed_.notify_all();
     return promise->get_future();
 }
 
-std::future<Reply<worker::MapSummary>> LocalExecutor::inspect(worker::InspectRequest request) {
-    return ask<worker::MapSummary>(std::move(request));
+std::future<Reply<worker::MapSummary>> LocalExecutor::inspect(worker::InspectRequest question) {
+    return ask<worker::MapSummary>(std::move(question));
 }
 
-std::future<Reply<worker::Assessments>> LocalExecutor::assess(worker::AssessRequest request) {
-    return ask<worker::Assessments>(std::move(request));
+std::future<Reply<worker::Assessments>> LocalExecutor::assess(worker::AssessRequest question) {
+    return ask<worker::Assessments>(std::move(question));
 }
 
 void LocalExecutor::run() {
@@ -128,82 +128,81 @@ void LocalExecutor::handle_answer(const worker::Answer& answer) {
     const auto found = in_flight_.find(answer.id);
     if (found == in_flight_.end())
         return;
-    Request request = std::move(found->second);
+    Work work = std::move(found->second);
     in_flight_.erase(found);
     const auto* failure = std::get_if<worker::Failure>(&answer.what);
     if (failure != nullptr && failure->may_retry)
-        retry_or_fail(std::move(request), failure->sentence);
+        retry_or_fail(std::move(work), failure->sentence);
     else
-        finish(request, answer.what);
+        finish(work, answer.what);
 }
 
 void LocalExecutor::handle_death(const std::string& how) {
     spdlog::warn("the worker {} with {} requests in flight", how, in_flight_.size());
     worker_.reset();
-    std::map<std::uint64_t, Request> lost;
+    std::map<std::uint64_t, Work> lost;
     lost.swap(in_flight_);
-    for (auto& [id, request] : lost) {
-        request.alone = true;
-        retry_or_fail(std::move(request), fmt::format("the worker {} while at it", how));
+    for (auto& [id, work] : lost) {
+        work.alone = true;
+        retry_or_fail(std::move(work), fmt::format("the worker {} while at it", how));
     }
 }
 
-void LocalExecutor::retry_or_fail(Request request, const std::string& sentence) {
-    if (++request.failed_attempts < max_attempts) {
+void LocalExecutor::retry_or_fail(Work work, const std::string& sentence) {
+    if (++work.failed_attempts < max_attempts) {
         // Without the earlier result: it may be what the worker cannot bear.
-        if (auto* bake = std::get_if<worker::BakeRequest>(&request.what))
+        if (auto* bake = std::get_if<worker::BakeRequest>(&work.what))
             bake->earlier.reset();
-        again_.push_back(std::move(request));
+        again_.push_back(std::move(work));
         return;
     }
-    finish(request,
-           worker::Failure{fmt::format("{} (tried {} times)", sentence, request.failed_attempts), false});
+    finish(work, worker::Failure{fmt::format("{} (tried {} times)", sentence, work.failed_attempts), false});
 }
 
-void LocalExecutor::finish(Request& request, Outcome outcome) {
-    if (request.answer)
-        request.answer(std::move(outcome));
+void LocalExecutor::finish(Work& work, Outcome outcome) {
+    if (work.answer)
+        work.answer(std::move(outcome));
     else
         callbacks_.finished(
-            *request.sector, request.failed_attempts, reply_of<worker::SectorResult>(std::move(outcome)));
+            *work.sector, work.failed_attempts, reply_of<worker::SectorResult>(std::move(outcome)));
 }
 
-std::optional<LocalExecutor::Request> LocalExecutor::next_request() {
+std::optional<LocalExecutor::Work> LocalExecutor::next_work() {
     {
         const std::lock_guard lock(mutex_);
         if (draining_ || stopping_)
             return std::nullopt;
         if (!questions_.empty()) {
-            Request request = std::move(questions_.front());
+            Work work = std::move(questions_.front());
             questions_.pop_front();
-            return request;
+            return work;
         }
     }
     if (!again_.empty()) {
         // A suspect runs when nothing else does, and nothing joins it.
         if (again_.front().alone && !in_flight_.empty())
             return std::nullopt;
-        Request request = std::move(again_.front());
+        Work work = std::move(again_.front());
         again_.pop_front();
-        return request;
+        return work;
     }
     std::optional<SectorTask> task = callbacks_.next();
     if (!task)
         return std::nullopt;
-    Request request;
-    request.sector = task->id;
-    request.what = std::move(task->request);
-    return request;
+    Work work;
+    work.sector = task->id;
+    work.what = std::move(task->request);
+    return work;
 }
 
 void LocalExecutor::fill_window() {
     while (in_flight_.size() < window_) {
         if (in_flight_.size() == 1 && in_flight_.begin()->second.alone)
             return;
-        std::optional<Request> request = next_request();
-        if (!request)
+        std::optional<Work> work = next_work();
+        if (!work)
             return;
-        send(std::move(*request));
+        send(std::move(*work));
     }
 }
 
@@ -230,17 +229,17 @@ bool LocalExecutor::ensure_worker() {
     return true;
 }
 
-void LocalExecutor::send(Request request) {
+void LocalExecutor::send(Work work) {
     if (!ensure_worker()) {
         // The machine may be out of processes; the attempts bound how long we hope.
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
-        retry_or_fail(std::move(request), "no worker could be started");
+        retry_or_fail(std::move(work), "no worker could be started");
         return;
     }
     if (in_flight_.empty())
         last_news_ = std::chrono::steady_clock::now();
     const std::uint64_t id = next_id_++;
-    const auto [entry, added] = in_flight_.emplace(id, std::move(request));
+    const auto [entry, added] = in_flight_.emplace(id, std::move(work));
     worker_->send({id, entry->second.what});
 }
 

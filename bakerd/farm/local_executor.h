@@ -57,22 +57,22 @@ class LocalExecutor {
     LocalExecutor(const LocalExecutor&) = delete;
     LocalExecutor& operator=(const LocalExecutor&) = delete;
 
-    // There may be something new behind `next`.
+    // There may be a sector to bake behind `next`, which the executor asks whenever it has room.
     void wake();
 
     // The worker answers these before any waiting sector.
-    [[nodiscard]] std::future<Reply<worker::MapSummary>> inspect(worker::InspectRequest request);
-    [[nodiscard]] std::future<Reply<worker::Assessments>> assess(worker::AssessRequest request);
+    [[nodiscard]] std::future<Reply<worker::MapSummary>> inspect(worker::InspectRequest question);
+    [[nodiscard]] std::future<Reply<worker::Assessments>> assess(worker::AssessRequest question);
 
     // Takes no more work, waits at most `patience` until what is in flight has finished, then ends the
     // worker. What was not finished is not reported; open and later questions are answered with a refusal.
     void stop(std::chrono::milliseconds patience);
 
   private:
-    using Question = decltype(worker::Request::what);
+    using What = decltype(worker::Request::what);
     using Outcome = decltype(worker::Answer::what);
-    struct Request {
-        Question what;
+    struct Work {
+        What what;
         std::optional<std::uint64_t> sector;  // the caller's id; none of a question
         std::function<void(Outcome)> answer;  // of a question
         int failed_attempts = 0;
@@ -84,17 +84,17 @@ class LocalExecutor {
     };
 
     template <class Answer>
-    [[nodiscard]] std::future<Reply<Answer>> ask(Question question);
+    [[nodiscard]] std::future<Reply<Answer>> ask(What question);
     void run();
     void handle(const Event& event);
     void handle_answer(const worker::Answer& answer);
     void handle_death(const std::string& how);
-    void retry_or_fail(Request request, const std::string& sentence);
-    void finish(Request& request, Outcome outcome);
+    void retry_or_fail(Work work, const std::string& sentence);
+    void finish(Work& work, Outcome outcome);
     void fill_window();
-    [[nodiscard]] std::optional<Request> next_request();
+    [[nodiscard]] std::optional<Work> next_work();
     [[nodiscard]] bool ensure_worker();
-    void send(Request request);
+    void send(Work work);
 
     const Options options_;
     const Callbacks callbacks_;
@@ -102,20 +102,20 @@ class LocalExecutor {
 
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::deque<Event> events_;       // guarded by mutex_
-    std::deque<Request> questions_;  // guarded by mutex_
-    bool woken_ = false;             // guarded by mutex_
-    bool draining_ = false;          // guarded by mutex_
-    bool stopping_ = false;          // guarded by mutex_
-    bool idle_ = false;              // guarded by mutex_; the thread waits and nothing is in flight
+    std::deque<Event> events_;    // guarded by mutex_
+    std::deque<Work> questions_;  // guarded by mutex_
+    bool woken_ = false;          // guarded by mutex_
+    bool draining_ = false;       // guarded by mutex_
+    bool stopping_ = false;       // guarded by mutex_
+    bool idle_ = false;           // guarded by mutex_; the thread waits and nothing is in flight
 
     // Used by the executor's thread only.
     std::unique_ptr<WorkerProcess> worker_;
     std::uint64_t worker_number_ = 0;
     std::uint64_t next_id_ = 1;
     std::chrono::steady_clock::time_point last_news_;  // last answer, or the first request after a pause
-    std::map<std::uint64_t, Request> in_flight_;       // by the id sent to the worker
-    std::deque<Request> again_;                        // to be tried again
+    std::map<std::uint64_t, Work> in_flight_;          // by the id sent to the worker
+    std::deque<Work> again_;                           // to be tried again
 
     std::thread thread_;
 };

@@ -36,14 +36,14 @@ store::Result<std::vector<CacheEntry>> ResultCache::find(std::span<const map::Se
         for (const Checked<ResultRow>& row :
              results_that_hold(connection, sector, query.results_key, query.inventory)) {
             if (!entry.held)
-                take_in(connection, row, query, entry, pin);
+                hold_or_candidate(connection, row, query, entry, pin);
         }
         if (entry.held)
             return;
         entry.candidates.clear();
         for_each_result(
             connection, sector, query.results_key, max_candidates, [&](const Checked<ResultRow>& row) {
-                take_in(connection, row, query, entry, pin);
+                hold_or_candidate(connection, row, query, entry, pin);
                 return !entry.held;
             });
     };
@@ -61,11 +61,11 @@ store::Result<std::vector<CacheEntry>> ResultCache::find(std::span<const map::Se
     return entries;
 }
 
-void ResultCache::take_in(Connection& connection,
-                          const Checked<ResultRow>& found,
-                          const CacheQuery& query,
-                          CacheEntry& entry,
-                          CachePin& pin) {
+void ResultCache::hold_or_candidate(Connection& connection,
+                                    const Checked<ResultRow>& found,
+                                    const CacheQuery& query,
+                                    CacheEntry& entry,
+                                    CachePin& pin) {
     const ResultRow& row = found.row;
     if (!found.sound) {
         entry.warning = fmt::format(

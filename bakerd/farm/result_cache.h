@@ -90,11 +90,11 @@ class ResultCache {
 
   private:
     friend class CachePin;
-    void take_in(Connection& connection,
-                 const Checked<ResultRow>& found,
-                 const CacheQuery& query,
-                 CacheEntry& entry,
-                 CachePin& pin);
+    void hold_or_candidate(Connection& connection,
+                           const Checked<ResultRow>& found,
+                           const CacheQuery& query,
+                           CacheEntry& entry,
+                           CachePin& pin);
     [[nodiscard]] store::Result<void> shrink_to(std::int64_t max_bytes);
     struct Removed {
         std::vector<ResultRow> rows;
