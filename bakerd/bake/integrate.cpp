@@ -75,7 +75,7 @@ class Integrator {
     bool trace_segment(Path& path) {
         ++light_.rays;
         std::optional<trace::Hit> hit = task_.scene.closest(path.ray);
-        watch(path, hit ? hit->distance_m : path.ray.far_m);
+        watch(path, end_of(path.ray, hit));
         if (!hit)
             hit = doubted(path.ray);
         if (!hit) {
@@ -96,7 +96,7 @@ class Integrator {
         if (last)
             return false;
         if (transmitted_share(surface) > 0)
-            watch(path, end_of_beyond_surface(path.ray, *hit));
+            watch(path, end_of_surface(path.ray, *hit));
         if (static_light_.present())
             static_light_.add_at_surface(path, *hit, surface);
         return go_on(path, *hit, surface);

@@ -40,7 +40,7 @@ class LocalPath {
     bool step(std::uint32_t bounce, EndGroup& group) {
         ++rays_;
         const std::optional<trace::Hit> hit = start_.scene.closest(ray_);
-        watch(hit ? hit->distance_m : ray_.far_m);
+        watch(end_of(ray_, hit));
         if (!hit)
             return false;
         footprint_m_ += hit->distance_m * later_footprint;
@@ -52,7 +52,7 @@ class LocalPath {
             return false;
         const float through_share = transmitted_share(surface);
         if (through_share > 0)
-            watch(end_of_beyond_surface(ray_, *hit));
+            watch(end_of_surface(ray_, *hit));
         end_.position = ray_.origin + ray_.direction * hit->distance_m;
         end_.normal = hit->normal;
         end_.before = *before;

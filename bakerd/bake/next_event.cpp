@@ -15,12 +15,11 @@ Incident NextEvent::towards(const PointLight& light, const glm::vec3& from) cons
     const float distance_m = glm::length(to_light);
     if (!(distance_m > 0))
         return {};
-    return {to_light / distance_m, light.irradiance_at(from), light.position, distance_m, 0, 0};
+    return {to_light / distance_m, light.irradiance_at(from), light.position, distance_m, 0};
 }
 
 Incident NextEvent::towards(const Sun& sun, const glm::vec3& from) const {
-    return {
-        sun.towards, sun.irradiance, glm::vec3(0), exit_distance(from, sun.towards, probe_, reach_m_), -1, 0};
+    return {sun.towards, sun.irradiance, std::nullopt, exit_distance(from, sun.towards, probe_, reach_m_), 0};
 }
 
 std::optional<Incident> NextEvent::draw(const glm::vec3& from,
@@ -62,8 +61,7 @@ std::optional<Incident> NextEvent::draw(const glm::vec3& from,
     const trace::TrianglePoint on_light{lights_.map(), primitive, triangle.triangle, u_weight, v_weight};
     if (!trace::is_there(on_light))
         return std::nullopt;
-    const float magnitude = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), 1.0f});
-    Incident incident{direction, glm::vec3(0), point, distance_m, magnitude * 0x1p-20f / std::abs(cosine), 0};
+    Incident incident{direction, glm::vec3(0), point, distance_m, 0};
     incident.density =
         drawn.probability * triangle.share * 2 / double_area_m2 * distance_m * distance_m / std::abs(cosine);
     incident.light = trace::emission_at(on_light, {double_area_m2, distance_m * first_footprint}) /
@@ -83,16 +81,12 @@ float NextEvent::density_of(const glm::vec3& from, const glm::vec3& direction, c
 }
 
 trace::Ray NextEvent::shadow_ray(const glm::vec3& start, const Incident& incident) {
-    if (incident.clearance_m < 0)
+    if (!incident.target)
         return {start, incident.direction, incident.distance_m};
     // Aimed anew: from a start off the surface, the old direction would miss the light by as much.
-    const glm::vec3 way = incident.target - start;
+    const glm::vec3 way = *incident.target - start;
     const float distance_m = glm::length(way);
-    // A point of a surface is not in its own shadow.
-    return {
-        start,
-        distance_m > 0 ? way / distance_m : incident.direction,
-        distance_m - (incident.density > 0 ? std::max(distance_m * 0x1p-14f, incident.clearance_m) : 0.0f)};
+    return {start, distance_m > 0 ? way / distance_m : incident.direction, distance_m};
 }
 
 }  // namespace drtv::bake

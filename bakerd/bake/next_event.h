@@ -18,10 +18,9 @@ namespace drtv::bake {
 // density.
 struct Incident {
     glm::vec3 direction{};
-    glm::vec3 light{};      // already divided by the probability of the draw
-    glm::vec3 target{};     // the light's place; of a sun, nothing
-    float distance_m = 0;   // of the light; of a sun, to the end of the reach
-    float clearance_m = 0;  // before the target, within which the light's own surface lies; of a sun, below 0
+    glm::vec3 light{};                // already divided by the probability of the draw
+    std::optional<glm::vec3> target;  // the light's place; none of a sun
+    float distance_m = 0;             // of the light; of a sun, to the end of the reach
     float density = 0;  // per steradian with which next event draws this direction; 0: no path could find it
 };
 
@@ -50,7 +49,8 @@ class NextEvent {
                                    const glm::vec3& direction,
                                    const trace::Hit& hit) const;
 
-    // The ray on which nothing may lie, from `start`, a free point on the right side.
+    // The ray on which nothing may lie, from `start`, a free point on the right side. A light with a place
+    // may lie on a surface (trace::Scene::hides_surface).
     [[nodiscard]] static trace::Ray shadow_ray(const glm::vec3& start, const Incident& incident);
 
   private:

@@ -11,20 +11,9 @@
 namespace drtv::bake {
 namespace {
 
-// How far along the ray the coordinates' rounding reaches around the hit: 8 to 16 times their last digit,
-// measured across the surface.
+// How far along the ray the coordinates' rounding reaches around the hit.
 float clearance_along(const trace::Ray& ray, const trace::Hit& hit) {
-    const glm::vec3 point = ray.origin + ray.direction * hit.distance_m;
-    // The start's coordinates too: a point near the world's origin is no better known than the ray that found
-    // it.
-    const float magnitude = std::max({std::abs(point.x),
-                                      std::abs(point.y),
-                                      std::abs(point.z),
-                                      std::abs(ray.origin.x),
-                                      std::abs(ray.origin.y),
-                                      std::abs(ray.origin.z),
-                                      1.0f});
-    return magnitude * 0x1p-20f / -glm::dot(ray.direction, hit.normal);
+    return trace::rounding_m(ray, hit.distance_m) / -glm::dot(ray.direction, hit.normal);
 }
 
 }  // namespace
@@ -51,8 +40,15 @@ std::optional<glm::vec3> beyond_surface(const trace::Scene& scene,
     return *before + ray.direction * (2 * step);
 }
 
-float end_of_beyond_surface(const trace::Ray& ray, const trace::Hit& hit) {
+float end_of_surface(const trace::Ray& ray, const trace::Hit& hit) {
     return hit.distance_m + std::max(clearance_along(ray, hit), 0.0f);
+}
+
+// A back makes way for a front in its plane.
+float end_of(const trace::Ray& ray, const std::optional<trace::Hit>& hit) {
+    if (!hit)
+        return ray.far_m;
+    return hit->front ? hit->distance_m : end_of_surface(ray, *hit);
 }
 
 float exit_distance(const glm::vec3& origin,

@@ -24,8 +24,11 @@ inline constexpr float first_footprint = 1 / 16.0f, later_footprint = 1 / 4.0f;
                                                       const trace::Ray& ray,
                                                       const trace::Hit& hit);
 
-// How far along the ray that looks for other surfaces.
-[[nodiscard]] float end_of_beyond_surface(const trace::Ray& ray, const trace::Hit& hit);
+// How far along the ray that looks for other surfaces; and how far they lie that count as one with this one.
+[[nodiscard]] float end_of_surface(const trace::Ray& ray, const trace::Hit& hit);
+
+// Beyond this, metres along the ray, nothing matters for what it meets.
+[[nodiscard]] float end_of(const trace::Ray& ray, const std::optional<trace::Hit>& hit);
 
 // Where a ray leaves the sphere around `centre`; 0 when it starts outside.
 [[nodiscard]] float exit_distance(const glm::vec3& origin,

@@ -139,7 +139,7 @@ bool StaticLight::sees(const glm::vec3& start,
         const ShadowRay watched{ray, shares_of(weights, brightest(light) / static_irradiance_range)};
         task_.watch->record_shadow_rays({&watched, 1});
     }
-    return !task_.scene.occluded(ray);
+    return !(incident.target ? task_.scene.hides_surface(ray) : task_.scene.occluded(ray));
 }
 
 }  // namespace drtv::bake

@@ -151,7 +151,7 @@ bool FirstRays::may_come_to(const trace::Ray& ray, float enter_m) const {
         const auto hit = scene_.closest({first.origin, first.direction, end_m});
         if (!hit)
             return std::nullopt;
-        return bake::end_of_beyond_surface(first, *hit) >= enter_m;
+        return bake::end_of_surface(first, *hit) >= enter_m;
     };
     if (const auto over = steps_over(ray))
         return *over;

@@ -4,7 +4,10 @@
 #include "bakerd/trace/scene.h"
 #include "bakerd/trace/surface.h"
 
+#include <glm/geometric.hpp>
+
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -52,6 +55,14 @@ float order_of(const TriangleSet& set,
     return order_of(at, ray, glm::mat4x3(1), {a, b, c});
 }
 
+// In the space of the object the front is counter-clockwise, however the object is turned over.
+bool meets_front(const Query& query, const TriangleSet& set, const EmbreeHit& hit) {
+    const float facing =
+        hit.normal.x * hit.direction.x + hit.normal.y * hit.direction.y + hit.normal.z * hit.direction.z;
+    const bool in_world_space = set.instance != UINT32_MAX;
+    return (facing < 0) != (in_world_space && query.scene.mirrors(set.instance));
+}
+
 // Works the intersection out; what is met nowhere lies infinitely far.
 void resolve(Candidate& hit, const Query& query, const Ray& ray) {
     const glm::mat4x3& world_from_object = query.scene.world_from_object(hit.id.instance);
@@ -60,6 +71,12 @@ void resolve(Candidate& hit, const Query& query, const Ray& ray) {
     const float order_m = hit.at ? order_of(*hit.set, *hit.at, ray, world_from_object, corners)
                                  : std::numeric_limits<float>::infinity();
     hit.least_m = hit.most_m = order_m;
+    hit.front = hit.at && query.scene.meets_front(hit.id.instance, *hit.at, ray);
+}
+
+void resolve_late(Candidate& hit, const Query& query, const Ray& ray) {
+    if (hit.set != nullptr && !hit.at)
+        resolve(hit, query, ray);
 }
 
 bool is_there(const Candidate& hit) {
@@ -75,10 +92,47 @@ bool is_nearer(const Candidate& a, const Candidate& b) {
     return a.most_m < b.most_m || (a.most_m == b.most_m && (b.set == nullptr || a.id < b.id));
 }
 
+// Whether the end of the ray lies in the triangle's plane. The plane is met nowhere else, so that this is
+// what the ray ends on.
+bool holds_end(const Ray& ray, const Candidate& hit, const Scene& scene) {
+    const Triangle triangle =
+        transformed(scene.world_from_object(hit.id.instance), corners_of(*hit.set, hit.id.triangle));
+    const glm::dvec3 end = glm::dvec3(ray.origin) + glm::dvec3(ray.direction) * double{ray.far_m};
+    const glm::dvec3& normal = hit.at->normal;
+    const double across = std::abs(glm::dot(normal, end - triangle.a));
+    return across <= static_cast<double>(rounding_m(ray, ray.far_m)) * glm::length(normal);
+}
+
 // What lies farther is not looked at any more.
-void accept(const RTCFilterFunctionNArguments& args, const Ray& ray, float order_m) {
-    RTCRayN_tfar(args.ray, 1, 0) = order_m + query_slack(ray, order_m);
+void accept(const RTCFilterFunctionNArguments& args, const Ray& ray, const Candidate& hit) {
+    RTCRayN_tfar(args.ray, 1, 0) = limit_of(ray, hit);
     args.valid[0] = -1;
+}
+
+// The triangle's intersection for who asked for all of them.
+void collect(const Candidate& found, const Query& query, const Ray& ray) {
+    Candidate hit = found;
+    resolve(hit, query, ray);
+    if (hit.at && hit.at->distance_m <= double{ray.far_m} && is_there(hit))
+        query.crossings->push_back({hit.id, *hit.at});
+}
+
+void consider(const RTCFilterFunctionNArguments& args, Candidate hit, Query& query, const Ray& ray) {
+    Closest& closest = query.closest;
+    resolve(hit, query, ray);
+    resolve_late(closest.hit, query, ray);
+    if (!hit.at)
+        return;
+    if (is_nearer(hit, closest.hit)) {
+        if (!is_there(hit))
+            return;
+        closest.place_of_closer(hit.front) = hit;
+        accept(args, ray, hit);
+    } else if (hit.front && !closest.hit.front) {
+        resolve_late(closest.front, query, ray);
+        if (is_nearer(hit, closest.front) && is_there(hit))
+            closest.front = hit;
+    }
 }
 
 }  // namespace
@@ -93,10 +147,7 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
     const auto& set = *static_cast<const TriangleSet*>(args->geometryUserPtr);
     const TriangleId id = id_of(*args, set, 1, 0);
     if (query.crossings != nullptr) {
-        Candidate hit{id, &set, 0, 0, {}};
-        resolve(hit, query, ray);
-        if (hit.at && hit.at->distance_m <= double{ray.far_m} && is_there(hit))
-            query.crossings->push_back({id, *hit.at});
+        collect({id, &set, 0, 0, true, {}}, query, ray);
         return;
     }
     const EmbreeHit offered = embree_hit(*args, set, 1, 0);
@@ -104,29 +155,26 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
         const float doubt_m = query_slack(ray, offered.distance_m) * 0.5f;
         const float least_m = offered.distance_m - doubt_m;
         const float most_m = offered.distance_m + doubt_m;
-        if (least_m > query.best.most_m)
+        const bool front = meets_front(query, set, offered);
+        const Candidate& closest = query.closest.hit;
+        if (least_m > closest.most_m && (closest.front || !front))
             return;
-        if (most_m < query.best.least_m) {
-            query.best.id = id;
-            query.best.set = &set;
-            query.best.least_m = least_m;
-            query.best.most_m = most_m;
-            query.best.at.reset();
+        if (most_m < closest.least_m) {
+            Candidate& closer = query.closest.place_of_closer(front);
+            closer.id = id;
+            closer.set = &set;
+            closer.least_m = least_m;
+            closer.most_m = most_m;
+            closer.front = front;
+            closer.at.reset();
             // For when the intersection is worked out.
             __builtin_prefetch(&set.primitive->triangles[set.triangle_of(id.triangle)]);
             __builtin_prefetch(&query.scene.world_from_object(id.instance));
-            accept(*args, ray, most_m);
+            accept(*args, ray, closer);
             return;
         }
     }
-    Candidate hit{id, &set, 0, 0, {}};
-    resolve(hit, query, ray);
-    if (query.best.set != nullptr && !query.best.at)
-        resolve(query.best, query, ray);
-    if (!hit.at || !is_nearer(hit, query.best) || !is_there(hit))
-        return;
-    query.best = hit;
-    accept(*args, ray, hit.most_m);
+    consider(*args, {id, &set, 0, 0, true, {}}, query, ray);
 }
 
 void occluded_filter(const RTCFilterFunctionNArguments* args) {
@@ -139,13 +187,17 @@ void occluded_filter(const RTCFilterFunctionNArguments* args) {
         const TriangleId id = id_of(*args, set, args->N, n);
         if (!set.mixed) {
             const EmbreeHit offered = embree_hit(*args, set, args->N, n);
-            if (offered.distance_m + query_slack(ray, offered.distance_m) < ray.far_m &&
-                is_sure(ray, offered))
+            const float most_m = offered.distance_m + query_slack(ray, offered.distance_m);
+            // Nearer to the end, a surface may be the one on which the ray ends.
+            const float sure_m = query.to_surface ? ray.far_m * (1 - 0x1p-6f) : ray.far_m;
+            if (most_m < sure_m && is_sure(ray, offered))
                 continue;
         }
-        Candidate hit{id, &set, 0, 0, {}};
+        Candidate hit{id, &set, 0, 0, true, {}};
         resolve(hit, query, ray);
-        if (!hit.at || hit.most_m > ray.far_m || !is_there(hit))
+        const bool hides = hit.at && hit.most_m <= ray.far_m && is_there(hit) &&
+                           !(query.to_surface && holds_end(ray, hit, query.scene));
+        if (!hides)
             args->valid[n] = 0;
     }
 }

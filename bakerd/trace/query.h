@@ -85,13 +85,34 @@ struct Crossing {
     Intersection at;
 };
 
-// The closest hit so far, or the end of the ray. Where Embree's own distance decides, the intersection is
-// left for later.
+// A hit, or the end of the ray. Where Embree's own distance decides, the intersection is left for later.
 struct Candidate {
     TriangleId id;
     const TriangleSet* set = nullptr;  // none: the end of the ray
     float least_m = 0, most_m = 0;     // order_of lies between them
+    bool front = true;                 // the ray met the counter-clockwise side
     std::optional<Intersection> at;    // if worked out; then both are order_of
+};
+
+// How far Embree is asked to look when this is the closest so far: behind a back, for a front in its plane.
+[[nodiscard]] inline float limit_of(const Ray& ray, const Candidate& closest) {
+    const float slack_m = query_slack(ray, closest.most_m);
+    return closest.most_m + (closest.front ? slack_m : 2 * slack_m);
+}
+
+// The closest hit so far. The front of a surface in whose plane the back of another lies is what a ray meets
+// of both, whichever rounding makes the closer one: the walls of rooms touch that way. So as long as the
+// closest is a back, the closest front behind it is kept as well.
+struct Closest {
+    Candidate hit;    // before there is one: the end of the ray
+    Candidate front;  // says something only while `hit` is a back
+
+    // Where a closer one goes.
+    [[nodiscard]] Candidate& place_of_closer(bool is_front) {
+        if (hit.front && !is_front)
+            front = hit;
+        return hit;
+    }
 };
 
 // REQUIRES: `base` stays the first member, Embree hands back a pointer to it.
@@ -99,9 +120,10 @@ struct Query {
     RTCIntersectContext base;
     const Scene& scene;
     std::span<const Ray>
-        rays;        // in the world, by RTCRay::id: an instance's filter gets them in its own space
-    Candidate best;  // of `rays[0]`
+        rays;         // in the world, by RTCRay::id: an instance's filter gets them in its own space
+    Closest closest;  // of `rays[0]`
     std::vector<Crossing>* crossings = nullptr;  // collect every hit instead of the closest
+    bool to_surface = false;  // occlusion: rays end on surfaces, which do not hide that end
 
     Query(const Scene& asked, std::span<const Ray> asked_rays) : scene(asked), rays(asked_rays) {
         rtcInitIntersectContext(&base);

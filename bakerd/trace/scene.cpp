@@ -13,19 +13,10 @@
 namespace drtv::trace {
 namespace {
 
-// The back of a triangle that has a twin is the twin's front: which of the two the ray met first is rounding.
-void turn_to_twin(const TriangleSet::Twin& twin, Hit& hit) {
-    const std::array<float, 3> weights = {1 - hit.u - hit.v, hit.u, hit.v};
-    std::array<float, 3> of_twin{};
-    of_twin[twin.first] = weights[0];
-    of_twin[(twin.first + 2u) % 3] = weights[1];
-    of_twin[(twin.first + 1u) % 3] = weights[2];
-    hit.set = nullptr;
-    hit.primitive = twin.primitive;
-    hit.triangle = twin.triangle;
-    hit.u = of_twin[1];
-    hit.v = of_twin[2];
-    hit.front = true;
+Intersection intersection_of(const Candidate& hit, const Scene& scene, const Ray& ray) {
+    return hit.at ? *hit.at
+                  : *intersect(
+                        ray, scene.world_from_object(hit.id.instance), corners_of(*hit.set, hit.id.triangle));
 }
 
 }  // namespace
@@ -38,40 +29,38 @@ const TriangleSet& Scene::set_of(std::uint32_t instance, std::uint32_t embree_ge
 
 std::optional<Hit> Scene::closest(const Ray& ray) const {
     Query query(*this, {&ray, 1});
-    query.best.least_m = query.best.most_m = ray.far_m;
+    Closest& closest = query.closest;
+    closest.hit.least_m = closest.hit.most_m = ray.far_m;
     const Sides sides(ray);
     for (int side = 0; side < sides.count; ++side) {
         RTCRayHit r;
-        set_ray(r,
-                sides.origin(ray, side),
-                ray.direction,
-                query.best.most_m + query_slack(ray, query.best.most_m));
+        set_ray(r, sides.origin(ray, side), ray.direction, limit_of(ray, closest.hit));
         rtcIntersect1(handle_, &query.base, &r);
     }
-    if (query.best.set == nullptr)
+    if (closest.hit.set == nullptr)
         return std::nullopt;
-    const TriangleId& id = query.best.id;
-    const TriangleSet& set = *query.best.set;
-    const Instance& instance = instances_[id.instance];
-    const Intersection at = query.best.at
-                                ? *query.best.at
-                                : *intersect(ray, instance.world_from_object, corners_of(set, id.triangle));
-    const bool front = meets_front(id.instance, at, ray);
+    const Intersection at = intersection_of(closest.hit, *this, ray);
+    if (!closest.hit.front && closest.front.set != nullptr) {
+        const Intersection of_front = intersection_of(closest.front, *this, ray);
+        if (in_one_plane(ray, at, of_front))
+            return hit_at(closest.front, of_front, ray);
+    }
+    return hit_at(closest.hit, at, ray);
+}
+
+Hit Scene::hit_at(const Candidate& candidate, const Intersection& at, const Ray& ray) const {
     const double double_area_m2 = glm::length(at.normal);
     const double towards = glm::dot(at.normal, glm::dvec3(ray.direction)) < 0 ? 1 : -1;
-    Hit hit{static_cast<float>(at.distance_m),
-            id.instance,
-            set.primitive_index,
-            set.triangle_of(id.triangle),
+    return {static_cast<float>(at.distance_m),
+            candidate.id.instance,
+            candidate.set->primitive_index,
+            candidate.set->triangle_of(candidate.id.triangle),
             at.u,
             at.v,
-            front,
+            candidate.front,
             glm::vec3(at.normal * (towards / double_area_m2)),
             static_cast<float>(double_area_m2),
-            &set};
-    if (!front && !set.twins.empty() && set.twins[id.triangle].present())
-        turn_to_twin(set.twins[id.triangle], hit);
-    return hit;
+            candidate.set};
 }
 
 // The front is counter-clockwise in object space.
@@ -107,14 +96,9 @@ Ray beside(const Ray& ray) {
 
 Surface Scene::surface(const Hit& hit, float footprint_m) const {
     const map::Role role = instances_[hit.instance].role;
-    const auto of = [&](const map::Map& map, const map::Primitive& primitive) {
-        return surface_at(
-            {map, primitive, hit.triangle, hit.u, hit.v}, role, hit.front, {hit.double_area_m2, footprint_m});
-    };
     // What the hit knows already is not looked up again: in a large map that is far away in memory.
-    if (hit.set != nullptr)
-        return of(*hit.set->map, *hit.set->primitive);
-    return of(*map_, map_->meshes[object_of(hit).mesh].primitives[hit.primitive]);
+    const TrianglePoint point{*hit.set->map, *hit.set->primitive, hit.triangle, hit.u, hit.v};
+    return surface_at(point, role, hit.front, {hit.double_area_m2, footprint_m});
 }
 
 void Scene::occluded(std::span<const Ray> rays, std::vector<bool>& answers) const {
@@ -136,25 +120,27 @@ void Scene::occluded(std::span<const Ray> rays, std::vector<bool>& answers) cons
 
 std::size_t Scene::crossings(const Ray& ray) const {
     const std::vector<Crossing> crossings = all_crossings(ray);
-    // Twins are one surface.
-    std::size_t count = crossings.size();
-    for (const Crossing& a : crossings) {
-        const TriangleSet& set = set_of(a.id.instance, a.id.set);
-        if (set.twins.empty() || !set.twins[a.id.triangle].present())
-            continue;
-        const TriangleSet::Twin& twin = set.twins[a.id.triangle];
-        for (const Crossing& b : crossings) {
-            const TriangleSet& other = set_of(b.id.instance, b.id.set);
-            if (a.id < b.id && a.id.instance == b.id.instance && other.primitive_index == twin.primitive &&
-                other.triangle_of(b.id.triangle) == twin.triangle)
-                --count;
-        }
-    }
-    return count;
+    const auto is_front = [&](const Crossing& c) { return meets_front(c.id.instance, c.at, ray); };
+    // Of a front and a back in one plane the front alone counts.
+    const auto makes_way = [&](const Crossing& back) {
+        return !is_front(back) && std::ranges::any_of(crossings, [&](const Crossing& other) {
+            return is_front(other) && in_one_plane(ray, back.at, other.at);
+        });
+    };
+    return crossings.size() - static_cast<std::size_t>(std::ranges::count_if(crossings, makes_way));
 }
 
 bool Scene::occluded(const Ray& ray) const {
+    return is_met(Query(*this, {&ray, 1}), ray);
+}
+
+bool Scene::hides_surface(const Ray& ray) const {
     Query query(*this, {&ray, 1});
+    query.to_surface = true;
+    return is_met(std::move(query), ray);
+}
+
+bool Scene::is_met(Query query, const Ray& ray) const {
     const Sides sides(ray);
     for (int side = 0; side < sides.count; ++side) {
         RTCRay r;

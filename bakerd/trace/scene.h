@@ -22,7 +22,10 @@ struct RTCSceneTy;
 
 namespace drtv::trace {
 
-struct Crossing;  // query.h
+// query.h
+struct Candidate;
+struct Crossing;
+struct Query;
 
 // A ray a hair's breadth beside this one. Embree's robust test gives an edge one sign for both its triangles,
 // but rounds the edges around a vertex each by itself: of rays aimed exactly at a vertex, some 10 in a
@@ -38,7 +41,7 @@ struct Hit {
     bool front = false;                // the ray met the counter-clockwise side
     glm::vec3 normal{};                // unit, world, on the ray's side
     float double_area_m2 = 0;          // twice the triangle's area in the world
-    const TriangleSet* set = nullptr;  // of the triangle, where it was not found by its twin
+    const TriangleSet* set = nullptr;  // of the triangle
 };
 
 // One crossing of a vertical line with a static object.
@@ -65,14 +68,16 @@ class Scene {
     Scene& operator=(const Scene&) = delete;
 
     // The closest hit. What alpha takes away lets the ray through; ties go to the object of the smaller
-    // digest.
+    // digest. Of surfaces in one plane the one that turns its front to the ray is met.
     [[nodiscard]] std::optional<Hit> closest(const Ray& ray) const;
     // Textures are averaged over a width of `footprint_m`.
     [[nodiscard]] Surface surface(const Hit& hit, float footprint_m) const;
     [[nodiscard]] bool occluded(const Ray& ray) const;
+    // The same of a ray that ends on a surface, or on a light in its plane: that does not hide it.
+    [[nodiscard]] bool hides_surface(const Ray& ray) const;
     // The same for many rays at once, which Embree does faster where they are incoherent.
     void occluded(std::span<const Ray> rays, std::vector<bool>& answers) const;
-    // How many surfaces the ray crosses; two that are twins (triangle_set.h) are one.
+    // How many surfaces the ray crosses; a front and a back in one plane are one.
     [[nodiscard]] std::size_t crossings(const Ray& ray) const;
 
     // All crossings of the vertical line at (x, y) with static objects, from the top down; `hits` is
@@ -99,6 +104,10 @@ class Scene {
         return instances_[instance].world_from_object;
     }
 
+    [[nodiscard]] bool mirrors(std::uint32_t instance) const { return instances_[instance].mirrored; }
+    // Whether a ray meets the side that is counter-clockwise in object space.
+    [[nodiscard]] bool meets_front(std::uint32_t instance, const Intersection& at, const Ray& ray) const;
+
     // Embree's scene, for benchmarks that measure what it alone costs.
     [[nodiscard]] RTCSceneTy* embree_scene() const { return handle_; }
 
@@ -114,7 +123,8 @@ class Scene {
     Scene() = default;
     void add_instance(std::uint32_t object, const MeshBvh& bvh);
     void add_in_world_space(std::uint32_t object, const Region& region, float reach_m);
-    [[nodiscard]] bool meets_front(std::uint32_t instance, const Intersection& at, const Ray& ray) const;
+    [[nodiscard]] bool is_met(Query query, const Ray& ray) const;
+    [[nodiscard]] Hit hit_at(const Candidate& candidate, const Intersection& at, const Ray& ray) const;
     [[nodiscard]] std::vector<Crossing> all_crossings(const Ray& ray) const;
     [[nodiscard]] const TriangleSet& set_of(std::uint32_t instance, std::uint32_t embree_geometry) const;
 

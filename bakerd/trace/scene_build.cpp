@@ -14,7 +14,7 @@ bool overlaps(const map::Bounds& bounds, const Region& region, float margin_m) {
            bounds.low.y <= region.high.y + margin_m && bounds.high.y >= region.low.y - margin_m;
 }
 
-bool mirrors(const glm::mat4x3& world_from_object) {
+bool is_mirroring(const glm::mat4x3& world_from_object) {
     const glm::dvec3 x(world_from_object[0]);
     const glm::dvec3 y(world_from_object[1]);
     const glm::dvec3 z(world_from_object[2]);
@@ -72,7 +72,7 @@ void Scene::add_instance(std::uint32_t object, const MeshBvh& bvh) {
     rtcAttachGeometryByID(handle_, instance, static_cast<unsigned>(instances_.size()));
     rtcReleaseGeometry(instance);
     instances_.push_back(
-        {world_from_object, &bvh, object, map_->objects[object].role, mirrors(world_from_object)});
+        {world_from_object, &bvh, object, map_->objects[object].role, is_mirroring(world_from_object)});
 }
 
 void Scene::add_in_world_space(std::uint32_t object, const Region& region, float reach_m) {
@@ -94,7 +94,7 @@ void Scene::add_in_world_space(std::uint32_t object, const Region& region, float
         world_sets_.push_back(std::move(set));
     }
     instances_.push_back(
-        {placed.world_from_object, nullptr, object, placed.role, mirrors(placed.world_from_object)});
+        {placed.world_from_object, nullptr, object, placed.role, is_mirroring(placed.world_from_object)});
 }
 
 Scene::~Scene() {

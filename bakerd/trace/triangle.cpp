@@ -129,6 +129,18 @@ float order_of(const Intersection& at,
     return static_cast<float>(at.distance_m + std::max(error_m - slack_m, 0.0));
 }
 
+bool in_one_plane(const Ray& ray, const Intersection& a, const Intersection& b) {
+    constexpr double even = 0.9999;  // the cosine between their normals
+    const double cosine = glm::dot(a.normal, b.normal);
+    const double squares = glm::dot(a.normal, a.normal) * glm::dot(b.normal, b.normal);
+    if (square(cosine) < square(even) * squares)
+        return false;
+    const auto distance_m = static_cast<float>(a.distance_m);
+    const double across_m = std::abs(a.distance_m - b.distance_m) *
+                            std::abs(glm::dot(a.normal, glm::dvec3(ray.direction))) / glm::length(a.normal);
+    return across_m <= static_cast<double>(rounding_m(ray, distance_m));
+}
+
 std::optional<double> height_at(const Triangle& triangle, glm::vec2 at) {
     const auto& [a, b, c] = triangle;
     const glm::dvec3 normal = glm::cross(b - a, c - a);

@@ -49,6 +49,20 @@ struct Intersection {
     return std::max({std::abs(ray.origin.x), std::abs(ray.origin.y), std::abs(ray.origin.z)}) + 64;
 }
 
+// By how much points on a surface at that distance are off across it, metres: 8 to 16 times the last digit of
+// their coordinates, or of the start's, which is no better known. What lies within that is in one place.
+[[nodiscard]] inline float rounding_m(const Ray& ray, float distance_m) {
+    const glm::vec3 point = ray.origin + ray.direction * distance_m;
+    return std::max({std::abs(point.x),
+                     std::abs(point.y),
+                     std::abs(point.z),
+                     std::abs(ray.origin.x),
+                     std::abs(ray.origin.y),
+                     std::abs(ray.origin.z),
+                     1.0f}) *
+           0x1p-20f;
+}
+
 // How far beyond a limit Embree is asked to look, metres. Grows with the distance.
 [[nodiscard]] inline float query_slack(const Ray& ray, float distance_m) {
     return distance_m * 0x1p-12f + coordinate_m(ray) * 0x1p-16f;
@@ -95,6 +109,9 @@ struct EmbreeHit {
 // Height of the triangle's plane at a point inside its plan, from its corners alone: the distance along a
 // line of kilometres would have lost the digits. Nothing for a vertical triangle.
 [[nodiscard]] std::optional<double> height_at(const Triangle& triangle, glm::vec2 at);
+
+// Whether two surfaces that a ray meets are one: in the same place, and even.
+[[nodiscard]] bool in_one_plane(const Ray& ray, const Intersection& a, const Intersection& b);
 
 // From a point to the nearest one of the triangle.
 [[nodiscard]] double distance_to(const Triangle& triangle, const glm::dvec3& point);

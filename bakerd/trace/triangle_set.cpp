@@ -8,75 +8,8 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <optional>
-#include <tuple>
 
 namespace drtv::trace {
-namespace {
-
-std::uint64_t position_hash(const glm::vec3& p) {
-    std::uint64_t hash = 0;
-    for (glm::length_t k = 0; k < 3; ++k)
-        hash = (hash ^ std::bit_cast<std::uint32_t>(p[k])) * 0x9E3779B97F4A7C15u;
-    return hash ^ hash >> 29;
-}
-
-struct Corners {
-    std::uint64_t hash;  // of the corners in any order
-    std::uint32_t set, triangle;
-    std::array<glm::vec3, 3> at;
-};
-
-// The corner of `b` at which it is `a` turned round; nothing where it is not.
-std::optional<std::uint8_t> turned_at(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b) {
-    for (std::uint8_t k = 0; k < 3; ++k) {
-        if (a[0] == b[k] && a[1] == b[(k + 2u) % 3] && a[2] == b[(k + 1u) % 3])
-            return k;
-    }
-    return std::nullopt;
-}
-
-void find_twins(std::vector<std::unique_ptr<TriangleSet>>& sets) {
-    std::vector<Corners> all;
-    for (std::uint32_t s = 0; s < sets.size(); ++s) {
-        const TriangleSet& set = *sets[s];
-        if (set.material->double_sided)
-            continue;
-        for (std::uint32_t n = 0; n < set.size(); ++n) {
-            const glm::uvec3& t = set.primitive->triangles[set.triangle_of(n)];
-            const std::vector<glm::vec3>& p = set.primitive->positions;
-            all.push_back({position_hash(p[t.x]) + position_hash(p[t.y]) + position_hash(p[t.z]),
-                           s,
-                           n,
-                           {p[t.x], p[t.y], p[t.z]}});
-        }
-    }
-    // Of several, the first in the order of the content.
-    std::ranges::sort(all, {}, [](const Corners& c) { return std::tuple(c.hash, c.set, c.triangle); });
-    for (std::size_t first = 0, end = 0; first < all.size(); first = end) {
-        while (end < all.size() && all[end].hash == all[first].hash)
-            ++end;
-        constexpr std::size_t most_alike =
-            64;  // of which one is looked for: no sensible mesh has more in one place
-        for (std::size_t a = first; end - first > 1 && a < end; ++a) {
-            for (std::size_t b = first; b < std::min(end, first + most_alike); ++b) {
-                const std::optional<std::uint8_t> corner = turned_at(all[a].at, all[b].at);
-                if (!corner)
-                    continue;
-                TriangleSet& set = *sets[all[a].set];
-                const TriangleSet& other = *sets[all[b].set];
-                set.twins.resize(set.size());
-                set.twins[all[a].triangle] = {
-                    other.primitive_index, other.triangle_of(all[b].triangle), *corner};
-                break;
-            }
-        }
-    }
-}
-
-}  // namespace
 
 std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
                                                         const map::Mesh& mesh,
@@ -110,7 +43,6 @@ std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
                 sets.push_back(std::make_unique<TriangleSet>(std::move(*set)));
         }
     }
-    find_twins(sets);
     return sets;
 }
 

@@ -29,15 +29,6 @@ struct TriangleSet {
     // Of its triangles, in the space of Embree's scene; once attached.
     float longest_edge = 0, farthest_coordinate = 0;
     std::vector<std::uint32_t> triangles;  // of the primitive; empty: all of them, in order
-    // Of a one-sided set, by its triangle: the one of the same mesh that has the same corners and looks the
-    // other way. Thin things are often modelled so. Empty where there are none at all.
-    struct Twin {
-        std::uint32_t primitive = UINT32_MAX;
-        std::uint32_t triangle = 0;
-        std::uint8_t first = 0;  // the twin's corner that is this one's first
-        [[nodiscard]] bool present() const { return primitive != UINT32_MAX; }
-    };
-    std::vector<Twin> twins;
 
     [[nodiscard]] std::size_t size() const {
         return triangles.empty() ? primitive->triangles.size() : triangles.size();
