@@ -78,6 +78,8 @@ class Integrator {
         watch(path, end_of(path.ray, hit));
         if (!hit)
             hit = doubted(path.ray);
+        if (task_.scene.has_glass())
+            path.throughput *= tint(path.ray, hit);
         if (!hit) {
             add_sky(path);
             return false;
@@ -143,9 +145,14 @@ class Integrator {
         return hit;
     }
 
+    // Of the glass that the ray passed on its way.
+    [[nodiscard]] glm::vec3 tint(const trace::Ray& ray, const std::optional<trace::Hit>& hit) const {
+        return task_.scene.passed({ray.origin, ray.direction, hit ? hit->distance_m : ray.far_m}).tint;
+    }
+
     void add_sky(const Path& path) {
         if (path.bounce == 0)
-            sums_.add_sky(path.weights, path.half);
+            sums_.add_sky(path.weights, path.half, path.throughput);
         else if (path.ray.direction.z > 0)
             sums_.add_bounced_sky(path.weights, path.half, path.throughput, path.ray.direction);
     }

@@ -17,21 +17,6 @@ glm::vec3 radiometric(const glm::vec3& photometric) {
     return photometric / lumens_per_watt;
 }
 
-PointLight point_light(const map::Light& light) {
-    PointLight point;
-    point.position = light.position;
-    point.intensity = radiometric(light.colour * light.intensity);
-    point.range_m = light.range_m;
-    if (light.kind == map::LightKind::spot) {
-        const double outer = map::cos_sin(static_cast<double>(light.outer_cone_radians)).x;
-        const double inner = map::cos_sin(static_cast<double>(light.inner_cone_radians)).x;
-        point.direction = light.direction;
-        point.cone_scale = static_cast<float>(1 / std::max(0.001, inner - outer));
-        point.cone_offset = static_cast<float>(-outer) * point.cone_scale;
-    }
-    return point;
-}
-
 // About what a texture is on average.
 glm::vec3 mean_colour(const map::Map& map, const map::TextureView& view) {
     if (!view.present())
@@ -135,6 +120,21 @@ std::vector<std::size_t> emissive_triangles_of_meshes(const map::Map& map) {
 }
 
 }  // namespace
+
+PointLight point_light(const map::Light& light) {
+    PointLight point;
+    point.position = light.position;
+    point.intensity = radiometric(light.colour * light.intensity);
+    point.range_m = light.range_m;
+    if (light.kind == map::LightKind::spot) {
+        const double outer = map::cos_sin(static_cast<double>(light.outer_cone_radians)).x;
+        const double inner = map::cos_sin(static_cast<double>(light.inner_cone_radians)).x;
+        point.direction = light.direction;
+        point.cone_scale = static_cast<float>(1 / std::max(0.001, inner - outer));
+        point.cone_offset = static_cast<float>(-outer) * point.cone_scale;
+    }
+    return point;
+}
 
 glm::vec3 PointLight::irradiance_at(const glm::vec3& point) const {
     const glm::vec3 to_light = position - point;

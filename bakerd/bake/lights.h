@@ -36,6 +36,9 @@ struct PointLight {
     [[nodiscard]] glm::vec3 irradiance_at(const glm::vec3& point) const;
 };
 
+// REQUIRES: it is no directional light.
+[[nodiscard]] PointLight point_light(const map::Light& light);
+
 struct Sun {
     glm::vec3 towards{};     // unit
     glm::vec3 irradiance{};  // W/m2 of a surface that faces it

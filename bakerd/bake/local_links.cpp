@@ -77,7 +77,8 @@ void add_links(
         if (!(links.strength[k] > 0))
             continue;
         const PathEnd& end = group.ends[k];
-        const glm::vec3& colours = links.facing[k] < 0 ? end.transmitted : end.albedo;
+        const glm::vec3 on_the_way = links.turns_back ? end.share_back : links.tint;
+        const glm::vec3 colours = (links.facing[k] < 0 ? end.transmitted : end.albedo) * on_the_way;
         const Float4 back = irradiance_sh({links.way_x[k], links.way_y[k], links.way_z[k]});
         for (std::size_t c = 0; c < channel_count; ++c) {
             const float colour = colours[static_cast<glm::length_t>(c)];

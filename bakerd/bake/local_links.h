@@ -30,10 +30,11 @@ struct PathEnd {
     // Of going on from here to the path's first point, from either side.
     float density_front = 1;
     float density_back = 0;
-    float to_receiver = 0;  // cosine over square distance of the first point to p
-    float from_light = 0;   // irradiance of the first point from a light at p
-    Float4 direction{};     // SH of E/pi at p from the first point's direction
-    glm::vec3 first{};      // the first point
+    float to_receiver = 0;    // cosine over square distance of the first point to p
+    float from_light = 0;     // irradiance of the first point from a light at p
+    Float4 direction{};       // SH of E/pi at p from the first point's direction
+    glm::vec3 first{};        // the first point
+    glm::vec3 share_back{1};  // of light that goes back from the first point to p: by glass on that way
 };
 
 // Ends of paths that left their source side by side.
@@ -64,6 +65,8 @@ struct Links {
     alignas(32) EndGroup::Numbers here, there;  // to receivers here and there, but for colour and direction
     alignas(32) EndGroup::Numbers way_x, way_y, way_z;  // from q, unit
     alignas(32) EndGroup::Numbers facing;  // negative where q is on the other side of the surface
+    glm::vec3 tint{1};                     // of glass on the way to q
+    bool turns_back = false;               // q is p, and the way to it the one that the paths came
 };
 
 // Of the paths that a group belongs to.

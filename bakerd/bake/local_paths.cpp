@@ -43,6 +43,8 @@ class LocalPath {
         watch(end_of(ray_, hit));
         if (!hit)
             return false;
+        if (start_.scene.has_glass())
+            pass_glass(hit->distance_m, bounce);
         footprint_m_ += hit->distance_m * later_footprint;
         const trace::Surface surface = start_.scene.surface(*hit, footprint_m_);
         if (surface.absorbs)
@@ -70,6 +72,13 @@ class LocalPath {
     }
 
   private:
+    void pass_glass(float distance_m, std::uint32_t bounce) {
+        const auto passed = start_.scene.passed({ray_.origin, ray_.direction, distance_m});
+        carried_ *= passed.tint;
+        if (bounce == 0)
+            end_.share_back = passed.share;
+    }
+
     bool scatter_from(const trace::Hit& hit, const trace::Surface& surface, std::uint32_t bounce) {
         const glm::vec2 u = shifted(numbers_, start_.shift, 2 + 2 * std::size_t{bounce});
         const std::optional<Scattered> next = scatter(start_.scene, ray_, hit, surface, u);

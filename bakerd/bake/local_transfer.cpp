@@ -124,7 +124,8 @@ class LocalIntegrator {
             if (!(total > 0))
                 continue;
             // A path's first point sees where the path came from.
-            if (p == q && first_bounce)
+            links.turns_back = p == q && first_bounce;
+            if (links.turns_back)
                 add(group, links, work);
             else
                 work.shadows.push_back(shadow_ray(p, group, links, total, number));
@@ -133,8 +134,11 @@ class LocalIntegrator {
         watch_shadows(work);
         scene_.occluded(work.shadows, work.hidden);
         for (std::size_t n = 0; n < work.shadows.size(); ++n) {
-            if (!work.hidden[n])
-                add(group, work.joined[n], work);
+            if (work.hidden[n])
+                continue;
+            if (scene_.has_glass())
+                work.joined[n].tint = scene_.passed(work.shadows[n]).tint;
+            add(group, work.joined[n], work);
         }
     }
 

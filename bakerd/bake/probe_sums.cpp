@@ -1,5 +1,7 @@
 #include "bakerd/bake/probe_sums.h"
 
+#include "bakerd/map/colour.h"
+
 #include <algorithm>
 
 namespace drtv::bake {
@@ -65,12 +67,13 @@ void ProbeSums::add_direction(const BasisWeights& weights, Half half) {
         sums[b] += static_cast<double>(weights[b]);
 }
 
-void ProbeSums::add_sky(const BasisWeights& weights, Half half) {
+void ProbeSums::add_sky(const BasisWeights& weights, Half half, const glm::vec3& throughput) {
     if (half == Half::lower)
         return;
+    const float share = throughput == glm::vec3(1) ? 1 : map::luminance(throughput);
     for (std::size_t b = 0; b < basis_count; ++b)
-        visible_[b] += static_cast<double>(weights[b]);
-    add(block_->lit[upper], weights, glm::vec3(1));
+        visible_[b] += static_cast<double>(weights[b] * share);
+    add(block_->lit[upper], weights, throughput);
 }
 
 void ProbeSums::add_bounced_sky(const BasisWeights& weights,

@@ -33,8 +33,8 @@ class ProbeSums {
 
     // A first direction, whatever its path will bring.
     void add_direction(const BasisWeights& weights, Half half);
-    // The sky, seen from the probe.
-    void add_sky(const BasisWeights& weights, Half half);
+    // The sky, seen from the probe through glass that lets so much of its radiance through.
+    void add_sky(const BasisWeights& weights, Half half, const glm::vec3& throughput);
     // The sky in a direction, seen by way of surfaces that let so much of its radiance through.
     void add_bounced_sky(const BasisWeights& weights,
                          Half half,

@@ -1,5 +1,6 @@
 #include "bakerd/bake/sector_bake.h"
 
+#include "bakerd/bake/artist_warnings.h"
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/interiors.h"
 #include "bakerd/bake/local_encoding.h"
@@ -19,39 +20,6 @@ namespace drtv::bake {
 namespace {
 
 static_assert(placement::grid_size == grid_size && placement::no_probe == no_probe);
-
-// Back hits by object of the map.
-using BackHits = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-
-double back_hit_share(const Statistics& statistics) {
-    const auto rays = std::max<std::uint64_t>(statistics.rays, 1);
-    return static_cast<double>(statistics.back_hits) / static_cast<double>(rays);
-}
-
-// Warns of surfaces seen from behind, and names the object that most of them belong to.
-void warn_of_back_hits(const map::Map& map,
-                       const Sector& sector,
-                       std::span<const BackHits> of_probes,
-                       std::vector<std::string>& warnings) {
-    if (!has_many_back_hits(sector.statistics))
-        return;
-    std::map<std::uint32_t, std::uint64_t> by_object;
-    for (const BackHits& of_probe : of_probes) {
-        for (const auto& [object, hits] : of_probe)
-            by_object[object] += hits;
-    }
-    if (by_object.empty())
-        return;  // of probes that were given the objects are not known
-    const auto most = std::ranges::max_element(by_object, {}, [](const auto& entry) { return entry.second; });
-    const std::string& name = map.objects[most->first].name;
-    warnings.push_back(
-        fmt::format("sector ({}, {}): {:.0f} % of its rays meet surfaces from behind, most of them those of "
-                    "'{}': are its faces turned, or is a side of it missing?",
-                    sector.i,
-                    sector.j,
-                    back_hit_share(sector.statistics) * 100,
-                    name.empty() ? "an object without a name" : name));
-}
 
 void store_report(const placement::Report& report, Statistics& statistics) {
     statistics.candidates = report.candidates;
@@ -98,7 +66,7 @@ class SectorBake {
         for (const BakedProbe& probe : probes_)
             baked_.counts.push_back(probe.counts);
         baked_.sector.convergence = convergence_of(probes_, settings_);
-        warn_of_back_hits(world_.map(), baked_.sector, back_hits_, baked_.warnings);
+        warn_of_all();
         if (auto stored = store_interiors(world_.interiors(), baked_.positions, baked_.sector); !stored)
             return tl::unexpected(stored.error());
         if (settings_.local_transfer)
@@ -151,6 +119,13 @@ class SectorBake {
                                   baked_.positions,
                                   surroundings_of(*around_.scene, settings_.reach_m));
         baked_.sector.grid = {grid.z_origin_units, grid.cell_height_units, grid.cells};
+    }
+
+    void warn_of_all() {
+        warn_of_back_hits(world_.map(), baked_.sector, back_hits_, baked_.warnings);
+        const trace::FloatMode float_mode;
+        warn_of_closed_sky(*around_.scene, baked_.sector, baked_.positions, baked_.warnings);
+        warn_of_enclosed_lamps(*around_.scene, coordinate_, baked_.warnings);
     }
 
     // Local transfer from the sector's probes and its neighbours'.
@@ -213,11 +188,6 @@ tl::expected<BakedSector, std::string> bake_sector(World& world,
                                                    const WatchOfThread& watch) {
     const trace::FloatMode float_mode;
     return SectorBake(world, coordinate, settings, given, watch).run();
-}
-
-bool has_many_back_hits(const Statistics& statistics) {
-    constexpr double max_share = 0.05;
-    return back_hit_share(statistics) > max_share;
 }
 
 }  // namespace drtv::bake

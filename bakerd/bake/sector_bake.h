@@ -52,8 +52,4 @@ struct BakedSector {
                                                                  const Given& given = {},
                                                                  const WatchOfThread& watch = {});
 
-// Whether so many of its rays ended at the back of a one-sided surface that something stands inside out or
-// open.
-[[nodiscard]] bool has_many_back_hits(const Statistics& statistics);
-
 }  // namespace drtv::bake

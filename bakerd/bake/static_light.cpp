@@ -49,8 +49,9 @@ void StaticLight::add_drawn_at_probe(std::uint32_t path_number) {
     if (!survives(light, path_number, 0))
         return;
     const BasisWeights weights = basis_weights(incident->direction);
-    if (sees(task_.probe, *incident, weights, light / paths))
-        sums_.add_static(weights, light);
+    const glm::vec3 seen = share_seen(task_.probe, *incident, weights, light / paths);
+    if (seen != glm::vec3(0))
+        sums_.add_static(weights, light * seen);
 }
 
 void StaticLight::add_at_surface(const Path& path, const trace::Hit& hit, const trace::Surface& surface) {
@@ -82,8 +83,12 @@ void StaticLight::add_incident(const Path& path,
     const std::optional<glm::vec3> start =
         through ? beyond_surface(task_.scene, path.ray, hit) : before_surface(path.ray, hit);
     const float paths = static_cast<float>(task_.samples.count());
-    if (!start || !sees(*start, incident, path.weights, light / paths))
+    if (!start)
         return;
+    const glm::vec3 seen = share_seen(*start, incident, path.weights, light / paths);
+    if (seen == glm::vec3(0))
+        return;
+    light *= seen;
     if (incident.density > 0)
         light *= incident.density / (incident.density + scattering_density(surface, cosine, through));
     sums_.add_static(path.weights, light);
@@ -93,8 +98,12 @@ void StaticLight::add_direct() {
     const auto add = [&](const Incident& incident) {
         const BasisWeights weights = basis_weights(incident.direction);
         const glm::vec3 light = incident.light * inv_pi;
-        if (incident.light != glm::vec3(0) && sees(task_.probe, incident, weights, light))
-            sums_.add_direct(weights, light);
+        if (incident.light == glm::vec3(0))
+            return;
+        const trace::Ray ray = shadow_ray(task_.probe, incident, weights, light);
+        const glm::vec3 seen = task_.scene.share_seen(ray);
+        if (seen != glm::vec3(0))
+            sums_.add_direct(weights, light * seen);
     };
     for (const Sun& sun : next_event_.suns())
         add(next_event_.towards(sun, task_.probe));
@@ -128,18 +137,28 @@ bool StaticLight::survives(glm::vec3& light, std::uint32_t path_number, std::uin
     return true;
 }
 
-// `light` times `weights` is what the answer brings to the static irradiance.
-bool StaticLight::sees(const glm::vec3& start,
-                       const Incident& incident,
-                       const BasisWeights& weights,
-                       const glm::vec3& light) {
+glm::vec3 StaticLight::share_seen(const glm::vec3& start,
+                                  const Incident& incident,
+                                  const BasisWeights& weights,
+                                  const glm::vec3& light) {
+    const trace::Ray ray = shadow_ray(start, incident, weights, light);
+    const bool hidden = incident.target ? task_.scene.hides_surface(ray) : task_.scene.occluded(ray);
+    if (hidden)
+        return glm::vec3(0);
+    return task_.scene.has_glass() ? task_.scene.passed(ray).tint : glm::vec3(1);
+}
+
+trace::Ray StaticLight::shadow_ray(const glm::vec3& start,
+                                   const Incident& incident,
+                                   const BasisWeights& weights,
+                                   const glm::vec3& light) {
     ++shadow_rays_;
     const trace::Ray ray = NextEvent::shadow_ray(start, incident);
     if (task_.watch != nullptr) {
         const ShadowRay watched{ray, shares_of(weights, brightest(light) / static_irradiance_range)};
         task_.watch->record_shadow_rays({&watched, 1});
     }
-    return !(incident.target ? task_.scene.hides_surface(ray) : task_.scene.occluded(ray));
+    return ray;
 }
 
 }  // namespace drtv::bake

@@ -79,10 +79,17 @@ class StaticLight {
     [[nodiscard]] std::array<double, numbers_per_light> light_sample(std::uint32_t path_number,
                                                                      std::uint32_t point) const;
     [[nodiscard]] bool survives(glm::vec3& light, std::uint32_t path_number, std::uint32_t draw) const;
-    bool sees(const glm::vec3& start,
-              const Incident& incident,
-              const BasisWeights& weights,
-              const glm::vec3& light);
+    // `light` times `weights` is what a ray brings to the static irradiance where nothing hides its light.
+    // The share of it that comes to `start`; by chance, of one ray among many.
+    [[nodiscard]] glm::vec3 share_seen(const glm::vec3& start,
+                                       const Incident& incident,
+                                       const BasisWeights& weights,
+                                       const glm::vec3& light);
+    // Counts the ray, and tells of it.
+    [[nodiscard]] trace::Ray shadow_ray(const glm::vec3& start,
+                                        const Incident& incident,
+                                        const BasisWeights& weights,
+                                        const glm::vec3& light);
 
     const ProbeTask& task_;
     ProbeSums& sums_;

@@ -230,12 +230,13 @@ std::optional<Checked<JobSectorRow>> sector_of_job(Connection& connection,
 std::vector<std::string> warnings_of_job(Connection& connection, std::int64_t job, std::size_t max) {
     SQLite::Statement& statement = connection.statement(
         "SELECT warnings FROM job_sector WHERE warnings != '' AND job = ? ORDER BY j, i LIMIT ?");
+    // Many sectors may say the same: some more rows are looked at than there can be sentences.
     statement.bind(1, job);
-    statement.bind(2, static_cast<std::int64_t>(max));
+    statement.bind(2, static_cast<std::int64_t>(16 * max));
     std::vector<std::string> warnings;
-    while (statement.executeStep()) {
+    while (warnings.size() < max && statement.executeStep()) {
         for (std::string& sentence : split(statement.getColumn(0).getString())) {
-            if (warnings.size() < max)
+            if (warnings.size() < max && std::ranges::find(warnings, sentence) == warnings.end())
                 warnings.push_back(std::move(sentence));
         }
     }

@@ -46,7 +46,7 @@ void remove_unfinished_jobs(Connection& connection, const std::string& request_i
 [[nodiscard]] std::optional<Checked<JobSectorRow>> sector_of_job(Connection& connection,
                                                                  std::int64_t job,
                                                                  map::SectorCoordinate sector);
-// The first `max` warnings of a job's sectors, in the order of (j, i).
+// The first `max` warnings of a job's sectors, each once, in the order of (j, i).
 [[nodiscard]] std::vector<std::string> warnings_of_job(Connection& connection,
                                                        std::int64_t job,
                                                        std::size_t max);

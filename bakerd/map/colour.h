@@ -11,4 +11,9 @@ namespace drtv::map {
     return std::max({colour.x, colour.y, colour.z});
 }
 
+// As bright as a colour looks: Rec. 709.
+[[nodiscard]] inline float luminance(const glm::vec3& linear) {
+    return 0.2126f * linear.x + 0.7152f * linear.y + 0.0722f * linear.z;
+}
+
 }  // namespace drtv::map

@@ -57,15 +57,18 @@ Digest digest_material(const Material& material, const Map& map) {
     add_view(hasher, material.base_texture, map);
     hasher.add(plain(material.emission));
     add_view(hasher, material.emission_texture, map);
-    hasher.add(material.transmission);
-    if (material.transmission > 0)
-        hasher.add(plain(material.transmission_colour));
+    hasher.add(material.diffuse_transmission);
+    if (material.diffuse_transmission > 0)
+        hasher.add(plain(material.diffuse_transmission_colour));
     hasher.add(material.alpha_mode);
     if (material.alpha_mode != AlphaMode::opaque)
         hasher.add(material.base_colour.w);
     if (material.alpha_mode == AlphaMode::mask)
         hasher.add(material.alpha_cutoff);
     hasher.add(material.double_sided);
+    hasher.add(material.transmission);
+    if (material.transmission > 0)
+        add_view(hasher, material.transmission_texture, map);
     return hasher.finish();
 }
 
@@ -76,6 +79,7 @@ Digest digest_primitive(const Primitive& primitive, const Map& map) {
     hasher.add_sized(primitive.triangles);
     hasher.add_sized(primitive.uvs);
     hasher.add_sized(primitive.emission_uvs);
+    hasher.add_sized(primitive.transmission_uvs);
     hasher.add_sized(primitive.colours);
     hasher.add(map.materials[primitive.material].digest);
     return hasher.finish();

@@ -1,6 +1,7 @@
 #include "bakerd/map/import.h"
 
 #include "bakerd/map/content_digest.h"
+#include "bakerd/map/extension_check.h"
 #include "bakerd/map/gltf_document.h"
 #include "bakerd/map/import_state.h"
 #include "bakerd/map/material_import.h"
@@ -43,6 +44,16 @@ Imported check_interiors(const Map& map, const std::vector<FileEnd>& ends) {
     return {};
 }
 
+void warn_of_extensions(const GltfDocument& document, Map& map) {
+    for (const std::string& name : document.model.extensionsUsed) {
+        if (is_passed_over(name))
+            warn(map,
+                 document.at(fmt::format(
+                     "the extension {} is passed over: what it says of light, alpha or geometry is not baked",
+                     name)));
+    }
+}
+
 tl::expected<Map, std::string> import_files(std::span<const std::string> paths, const FileSource& files) {
     Map map;
     Shared shared;
@@ -53,6 +64,7 @@ tl::expected<Map, std::string> import_files(std::span<const std::string> paths, 
             return tl::unexpected(document.error());
         if (auto checked = check_mesh_sizes(*document); !checked)
             return tl::unexpected(checked.error());
+        warn_of_extensions(*document, map);
         const ImportState state{*document, map, shared};
         const auto materials = import_materials(state);
         if (!materials)

@@ -99,10 +99,14 @@ struct Material {
     // Radiance of the front (of both sides where double_sided), nits: factor x strength.
     glm::vec3 emission{0};
     TextureView emission_texture;
-    // KHR_materials_diffuse_transmission: the share of light that goes through instead of back, and its
-    // colour.
+    // KHR_materials_diffuse_transmission: the share of scattered light that goes through instead of back, and
+    // its colour.
+    float diffuse_transmission = 0;
+    glm::vec3 diffuse_transmission_colour{1};
+    // KHR_materials_transmission, clear glass: the share of light that goes straight on, in the base colour;
+    // times the red channel of the picture. The rest is scattered.
     float transmission = 0;
-    glm::vec3 transmission_colour{1};
+    TextureView transmission_texture;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;  // AlphaMode::mask only
     bool double_sided = false;  // reflects on both sides; else its back absorbs
@@ -111,11 +115,12 @@ struct Material {
 
 // Triangles of one material. Vertices stand in the order of their first use.
 struct Primitive {
-    std::vector<glm::vec3> positions;     // object space
-    std::vector<glm::uvec3> triangles;    // counter-clockwise seen from the front
-    std::vector<glm::vec2> uvs;           // of the base texture; empty unless the material has one
-    std::vector<glm::vec2> emission_uvs;  // of the emission texture; empty unless the material has one
-    std::vector<glm::vec4> colours;       // linear; empty unless the mesh has them
+    std::vector<glm::vec3> positions;         // object space
+    std::vector<glm::uvec3> triangles;        // counter-clockwise seen from the front
+    std::vector<glm::vec2> uvs;               // of the base texture; empty unless the material has one
+    std::vector<glm::vec2> emission_uvs;      // of the emission texture; empty unless the material has one
+    std::vector<glm::vec2> transmission_uvs;  // likewise
+    std::vector<glm::vec4> colours;           // linear; empty unless the mesh has them
     std::uint32_t material = 0;
     Digest digest;
 };

@@ -45,6 +45,22 @@ Failure check_material_extensions(const Checker& check, Json& material, const st
         if (Failure failure = check.properties(*transmission, inner, members))
             return failure;
     }
+    if (Json* transmission = extension_of(material, "KHR_materials_transmission")) {
+        const std::string inner = where + ": KHR_materials_transmission";
+        if (Failure failure = check.properties(
+                *transmission, inner, {number_at("transmissionFactor"), object_at("transmissionTexture")}))
+            return failure;
+        if (Failure failure = check_texture_use(check, *transmission, "transmissionTexture", inner))
+            return failure;
+    }
+    if (Json* colours = extension_of(material, "KHR_materials_pbrSpecularGlossiness")) {
+        const std::string inner = where + ": KHR_materials_pbrSpecularGlossiness";
+        if (Failure failure = check.properties(
+                *colours, inner, {numbers_at("diffuseFactor", 4), object_at("diffuseTexture")}))
+            return failure;
+        if (Failure failure = check_texture_use(check, *colours, "diffuseTexture", inner))
+            return failure;
+    }
     return {};
 }
 

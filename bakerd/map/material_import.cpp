@@ -41,6 +41,8 @@ class MaterialImporter {
             return tl::unexpected(read.error());
         if (auto read = read_emission(source, material); !read)
             return tl::unexpected(read.error());
+        if (auto read = read_diffuse_transmission(source, material); !read)
+            return tl::unexpected(read.error());
         if (auto read = read_transmission(source, material); !read)
             return tl::unexpected(read.error());
         return material;
@@ -52,13 +54,8 @@ class MaterialImporter {
     }
 
     Imported read_base(const tinygltf::Material& source, Material& material) {
-        const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-        for (std::size_t k = 0; k < 4 && k < pbr.baseColorFactor.size(); ++k) {
-            const double factor = pbr.baseColorFactor[k];
-            if (!lies_in(factor, 0, 1))
-                return fail(fmt::format("baseColorFactor {} lies outside [0, 1]", factor));
-            material.base_colour[static_cast<glm::length_t>(k)] = static_cast<float>(factor);
-        }
+        if (auto read = read_base_colour(source, material); !read)
+            return read;
         if (source.alphaMode == "MASK") {
             material.alpha_mode = AlphaMode::mask;
             material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
@@ -68,7 +65,25 @@ class MaterialImporter {
             return fail(fmt::format("alphaMode '{}' is unknown", source.alphaMode));
         }
         material.double_sided = source.doubleSided;
-        return read_view(pbr.baseColorTexture, presence_of(material), material.base_texture);
+        return read_view(base_texture_of(source), presence_of(material), material.base_texture);
+    }
+
+    Imported read_base_colour(const tinygltf::Material& source, Material& material) {
+        std::vector<double> factors = source.pbrMetallicRoughness.baseColorFactor;
+        const char* name = "baseColorFactor";
+        if (const tinygltf::Value* specular_glossiness = specular_glossiness_of(source)) {
+            name = "diffuseFactor";
+            factors.clear();
+            const bool present = specular_glossiness->Has(name);
+            for (int k = 0; present && k < 4; ++k)
+                factors.push_back(specular_glossiness->Get(name).Get(k).GetNumberAsDouble());
+        }
+        for (std::size_t k = 0; k < 4 && k < factors.size(); ++k) {
+            if (!lies_in(factors[k], 0, 1))
+                return fail(fmt::format("{} {} lies outside [0, 1]", name, factors[k]));
+            material.base_colour[static_cast<glm::length_t>(k)] = static_cast<float>(factors[k]);
+        }
+        return {};
     }
 
     Imported read_emission(const tinygltf::Material& source, Material& material) {
@@ -92,10 +107,23 @@ class MaterialImporter {
         }
         if (material.emission == glm::vec3(0))
             return {};  // then the picture shines nowhere
-        return read_view(source.emissiveTexture, Presence{}, material.emission_texture);
+        return read_view(emission_texture_of(source), Presence{}, material.emission_texture);
     }
 
     Imported read_transmission(const tinygltf::Material& source, Material& material) {
+        const tinygltf::Value* extension = transmission_of(source);
+        if (extension == nullptr || !extension->Has("transmissionFactor"))
+            return {};
+        const double factor = extension->Get("transmissionFactor").GetNumberAsDouble();
+        if (!lies_in(factor, 0, 1))
+            return fail(fmt::format("transmissionFactor {} lies outside [0, 1]", factor));
+        material.transmission = static_cast<float>(factor);
+        if (!(material.transmission > 0))
+            return {};
+        return read_view(transmission_texture_of(source), Presence{}, material.transmission_texture);
+    }
+
+    Imported read_diffuse_transmission(const tinygltf::Material& source, Material& material) {
         const auto extension = source.extensions.find("KHR_materials_diffuse_transmission");
         if (extension == source.extensions.end())
             return {};
@@ -104,7 +132,7 @@ class MaterialImporter {
             const double factor = value.Get("diffuseTransmissionFactor").GetNumberAsDouble();
             if (!lies_in(factor, 0, 1))
                 return fail(fmt::format("diffuseTransmissionFactor {} lies outside [0, 1]", factor));
-            material.transmission = static_cast<float>(factor);
+            material.diffuse_transmission = static_cast<float>(factor);
         }
         if (value.Has("diffuseTransmissionColorFactor")) {
             const tinygltf::Value& colours = value.Get("diffuseTransmissionColorFactor");
@@ -112,7 +140,7 @@ class MaterialImporter {
                 const double colour = colours.Get(k).GetNumberAsDouble();
                 if (!lies_in(colour, 0, 1))
                     return fail(fmt::format("diffuseTransmissionColorFactor {} lies outside [0, 1]", colour));
-                material.transmission_colour[k] = static_cast<float>(colour);
+                material.diffuse_transmission_colour[k] = static_cast<float>(colour);
             }
         }
         for (const char* texture : {"diffuseTransmissionTexture", "diffuseTransmissionColorTexture"}) {
@@ -128,9 +156,8 @@ class MaterialImporter {
         warn(state_.map, state_.document.at(rest));
     }
 
-    template <class TextureInfo>
-    Imported read_view(const TextureInfo& info, Presence presence, TextureView& view) {
-        const auto read = textures_.view_of(info, presence);
+    Imported read_view(const TextureUse& use, Presence presence, TextureView& view) {
+        const auto read = textures_.view_of(use, presence);
         if (!read)
             return fail(read.error());
         view = *read;

@@ -1,5 +1,7 @@
 #include "bakerd/map/mesh_attributes.h"
 
+#include "bakerd/map/material_textures.h"
+
 #include <fmt/format.h>
 
 #include <utility>
@@ -8,13 +10,12 @@ namespace drtv::map {
 namespace {
 
 // The number of the TEXCOORD that a texture is laid on by.
-template <class TextureInfo>
-int uv_set_of(const TextureInfo& texture) {
+int uv_set_of(const TextureUse& texture) {
     const auto transform = texture.extensions.find("KHR_texture_transform");
     if (transform == texture.extensions.end() || !transform->second.Has("texCoord"))
-        return texture.texCoord;
+        return texture.tex_coord;
     const tinygltf::Value& set = transform->second.Get("texCoord");
-    return set.IsNumber() ? set.GetNumberAsInt() : texture.texCoord;
+    return set.IsNumber() ? set.GetNumberAsInt() : texture.tex_coord;
 }
 
 class AttributeReader {
@@ -56,8 +57,7 @@ class AttributeReader {
         return values;
     }
 
-    template <class TextureInfo>
-    [[nodiscard]] tl::expected<Floats, std::string> read_uvs(const TextureInfo& texture) const {
+    [[nodiscard]] tl::expected<Floats, std::string> read_uvs(const TextureUse& texture) const {
         auto uvs = read_attribute(fmt::format("TEXCOORD_{}", uv_set_of(texture)), 2);
         // Without coordinates a texture shows its first texel everywhere, as renderers do.
         if (uvs && uvs->empty())
@@ -66,17 +66,21 @@ class AttributeReader {
     }
 
     tl::expected<void, std::string> read_all_uvs(const Material& material) {
-        if (material.base_texture.present()) {
-            auto uvs = read_uvs(gltf_material().pbrMetallicRoughness.baseColorTexture);
+        struct Use {
+            const TextureView& view;
+            TextureUse (*texture_of)(const tinygltf::Material&);
+            Floats& uvs;
+        };
+        for (const Use& use :
+             {Use{material.base_texture, base_texture_of, attributes_.uvs},
+              Use{material.emission_texture, emission_texture_of, attributes_.emission_uvs},
+              Use{material.transmission_texture, transmission_texture_of, attributes_.transmission_uvs}}) {
+            if (!use.view.present())
+                continue;
+            auto uvs = read_uvs(use.texture_of(gltf_material()));
             if (!uvs)
                 return tl::unexpected(uvs.error());
-            attributes_.uvs = std::move(*uvs);
-        }
-        if (material.emission_texture.present()) {
-            auto uvs = read_uvs(gltf_material().emissiveTexture);
-            if (!uvs)
-                return tl::unexpected(uvs.error());
-            attributes_.emission_uvs = std::move(*uvs);
+            use.uvs = std::move(*uvs);
         }
         return {};
     }

@@ -16,9 +16,10 @@ namespace drtv::map {
 struct Attributes {
     std::size_t vertex_count = 0;
     Floats positions;
-    Floats uvs;           // empty unless the material has a base texture
-    Floats emission_uvs;  // empty unless the material has an emission texture
-    Floats colours;       // empty unless the primitive has COLOR_0
+    Floats uvs;               // empty unless the material has a base texture
+    Floats emission_uvs;      // empty unless the material has an emission texture
+    Floats transmission_uvs;  // empty unless the material has a transmission texture
+    Floats colours;           // empty unless the primitive has COLOR_0
     std::size_t colour_components = 0;
 };
 

@@ -62,6 +62,8 @@ void append_vertex(Primitive& primitive, const Attributes& attributes, std::size
         primitive.uvs.push_back(uv_at(attributes.uvs, vertex));
     if (!attributes.emission_uvs.empty())
         primitive.emission_uvs.push_back(uv_at(attributes.emission_uvs, vertex));
+    if (!attributes.transmission_uvs.empty())
+        primitive.transmission_uvs.push_back(uv_at(attributes.transmission_uvs, vertex));
     if (!attributes.colours.empty())
         primitive.colours.push_back(colour_at(attributes, vertex));
 }

@@ -46,6 +46,16 @@ Failure check_node_extensions(const Checker& check,
         if (index.get<std::size_t>() >= light_count)
             return fmt::format("{} names light {}, the file has {}", inner, shown(index), light_count);
     }
+    if (Json* visibility = extension_of(node, "KHR_node_visibility")) {
+        const std::string inner = where + ": KHR_node_visibility";
+        if (Failure failure = check.properties(*visibility, inner, {boolean_at("visible")}))
+            return failure;
+    }
+    if (Json* levels = extension_of(node, "MSFT_lod")) {
+        const std::string inner = where + ": MSFT_lod";
+        if (Failure failure = check.properties(*levels, inner, {required(references_at("ids", "nodes"))}))
+            return failure;
+    }
     if (Json* instancing = extension_of(node, "EXT_mesh_gpu_instancing")) {
         const std::string inner = where + ": EXT_mesh_gpu_instancing";
         if (Failure failure = check.properties(*instancing, inner, {required(object_at("attributes"))}))

@@ -5,6 +5,7 @@
 #include "bakerd/map/mesh_placement.h"
 #include "bakerd/map/node_role.h"
 #include "bakerd/map/node_transform.h"
+#include "bakerd/map/warning.h"
 
 #include <fmt/format.h>
 #include <glm/mat4x4.hpp>
@@ -33,6 +34,28 @@ bool is_finite(const glm::dmat4& m) {
     return true;
 }
 
+// Coarser levels of detail of others (MSFT_lod), by node: they stand in the place of those, never beside
+// them.
+std::vector<bool> coarser_levels(const tinygltf::Model& model) {
+    std::vector<bool> coarser(model.nodes.size(), false);
+    for (const tinygltf::Node& node : model.nodes) {
+        const auto levels = node.extensions.find("MSFT_lod");
+        if (levels == node.extensions.end())
+            continue;
+        const tinygltf::Value& ids = levels->second.Get("ids");
+        for (int n = 0; n < static_cast<int>(ids.ArrayLen()); ++n)
+            coarser[static_cast<std::size_t>(ids.Get(n).GetNumberAsInt())] = true;
+    }
+    return coarser;
+}
+
+// Whether the node says that it and its children are not to be seen.
+bool is_hidden(const tinygltf::Node& node) {
+    const auto visibility = node.extensions.find("KHR_node_visibility");
+    return visibility != node.extensions.end() && visibility->second.Has("visible") &&
+           !visibility->second.Get("visible").Get<bool>();
+}
+
 // The default scene's roots; of a file without scenes, all nodes that are nobody's child.
 std::vector<int> root_nodes(const tinygltf::Model& model) {
     if (!model.scenes.empty())
@@ -55,6 +78,7 @@ struct Pending {
     int node;
     glm::dmat4 world_from_parent;
     NodePurpose purpose;
+    bool hidden = false;  // what would be seen of it, or shine, is not there: probes and volumes are helpers
 };
 
 class NodeImporter {
@@ -64,12 +88,13 @@ class NodeImporter {
           model_(state.document.model),
           materials_(materials),
           placer_(state.map, state.shared),
-          mesh_of_(model_.meshes.size()) {}
+          mesh_of_(model_.meshes.size()),
+          coarser_(coarser_levels(model_)) {}
 
     Imported run() {
         // A stack of our own: a chain of nodes may be deeper than the thread's stack.
         std::vector<Pending> stack;
-        push(stack, root_nodes(model_), world_from_gltf, {});
+        push(stack, root_nodes(model_), {-1, world_from_gltf, {}});
         while (!stack.empty()) {
             Pending pending = std::move(stack.back());
             stack.pop_back();
@@ -82,21 +107,23 @@ class NodeImporter {
                 return fail(pending.node, "its transform is not finite");
             if (auto read = read_purpose(node, pending.purpose); !read)
                 return fail(pending.node, read.error());
+            pending.hidden = pending.hidden || is_hidden(node);
             if (auto imported = import_node(pending, world_from_node); !imported)
                 return imported;
-            push(stack, node.children, world_from_node, pending.purpose);
+            push(stack, node.children, {-1, world_from_node, pending.purpose, pending.hidden});
         }
         return {};
     }
 
   private:
-    // The first node comes off the stack first.
-    static void push(std::vector<Pending>& stack,
-                     const std::vector<int>& nodes,
-                     const glm::dmat4& world_from_parent,
-                     const NodePurpose& purpose) {
-        for (auto node = nodes.rbegin(); node != nodes.rend(); ++node)
-            stack.push_back({*node, world_from_parent, purpose});
+    // The first node comes off the stack first. `from` is what they inherit.
+    void push(std::vector<Pending>& stack, const std::vector<int>& nodes, const Pending& from) const {
+        for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+            if (coarser_[static_cast<std::size_t>(*node)])
+                continue;
+            stack.push_back(from);
+            stack.back().node = *node;
+        }
     }
 
     [[nodiscard]] tl::unexpected<std::string> fail(int node, const std::string& rest) const {
@@ -110,11 +137,13 @@ class NodeImporter {
         if (pending.purpose.role == NodeRole::ignore)
             return {};
         const tinygltf::Node& node = at_index(model_.nodes, pending.node);
-        if (auto light = add_light(pending.node, world_from_node); !light)
-            return light;
+        if (!pending.hidden) {
+            if (auto light = add_light(pending.node, world_from_node); !light)
+                return light;
+        }
         if (pending.purpose.role == NodeRole::probe)
             return add_probe(pending.node, world_from_node);
-        if (node.mesh < 0)
+        if (node.mesh < 0 || (pending.hidden && !is_volume(pending.purpose.role)))
             return {};
         const auto mesh = mesh_index(node.mesh);
         if (!mesh)
@@ -199,8 +228,20 @@ class NodeImporter {
         const glm::dvec3 shines = -glm::dvec3(world_from_node[2]);  // along the node's -z
         light->direction = glm::length(shines) > 0 ? glm::vec3(glm::normalize(shines)) : glm::vec3(0, 0, -1);
         light->name = node.name;
+        warn_of_sun(*light);
         state_.map.lights.push_back(std::move(*light));
         return {};
+    }
+
+    // Many exported scenes have one, from the modeller's own view of them.
+    void warn_of_sun(const Light& light) const {
+        if (light.kind != LightKind::directional || !(light.intensity > 0) || light.colour == glm::vec3(0))
+            return;
+        const std::string name = light.name.empty() ? "a light" : fmt::format("the light '{}'", light.name);
+        warn(
+            state_.map,
+            state_.document.at(name + " is directional: it is baked as a sun that never moves. Leave it out, "
+                                      "with bake_role 'ignore', where the game has its own"));
     }
 
     const ImportState& state_;
@@ -208,6 +249,7 @@ class NodeImporter {
     const MaterialIndices& materials_;
     MeshPlacer placer_;
     std::vector<std::optional<std::uint32_t>> mesh_of_;  // by glTF mesh, once imported
+    const std::vector<bool> coarser_;                    // by node
 };
 
 }  // namespace

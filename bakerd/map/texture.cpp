@@ -62,6 +62,13 @@ auto mixed(const Bilinear& at, Fetch fetch) {
     return blended(top, bottom, at.ty);
 }
 
+float sample_channel(const Texture& texture, glm::vec2 uv, std::size_t channel) {
+    return mixed(around(uv, texture, texture), [&](TexelPlace at) {
+        const std::uint8_t* rgba = bytes_of(texture, at);
+        return share_of(rgba[channel]);
+    });
+}
+
 }  // namespace
 
 glm::vec3 brightest(const Texture& texture) {
@@ -94,10 +101,11 @@ glm::vec3 sample_filtered(const Texture& texture, glm::vec2 uv, std::uint32_t le
 }
 
 float sample_alpha(const Texture& texture, glm::vec2 uv) {
-    return mixed(around(uv, texture, texture), [&](TexelPlace at) {
-        const std::uint8_t* rgba = bytes_of(texture, at);
-        return share_of(rgba[3]);
-    });
+    return sample_channel(texture, uv, 3);
+}
+
+float sample_red(const Texture& texture, glm::vec2 uv) {
+    return sample_channel(texture, uv, 0);
 }
 
 glm::vec4 sample(const Texture& texture, glm::vec2 uv) {

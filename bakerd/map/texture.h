@@ -25,6 +25,9 @@ namespace drtv::map {
 // The alpha of `sample`, without its colour.
 [[nodiscard]] float sample_alpha(const Texture& texture, glm::vec2 uv);
 
+// Bilinear sample of the red channel as it stands, in [0, 1]: of pictures that hold numbers, not colours.
+[[nodiscard]] float sample_red(const Texture& texture, glm::vec2 uv);
+
 // Bilinear sample at uv: linear colour, alpha in w.
 [[nodiscard]] glm::vec4 sample(const Texture& texture, glm::vec2 uv);
 

@@ -52,16 +52,16 @@ tl::expected<void, std::string> apply_texture_transform(const tinygltf::Value& e
 
 }  // namespace
 
-tl::expected<TextureView, std::string> TextureImporter::view_of(int index,
-                                                                const tinygltf::ExtensionMap& extensions,
-                                                                Presence presence) {
-    const auto texture = texture_index(index, presence);
+tl::expected<TextureView, std::string> TextureImporter::view_of(const TextureUse& use, Presence presence) {
+    if (use.index < 0)
+        return TextureView{};
+    const auto texture = texture_index(use.index, presence);
     if (!texture)
         return tl::unexpected(texture.error());
     TextureView view;
     view.texture = *texture;
-    const auto transform = extensions.find("KHR_texture_transform");
-    if (transform == extensions.end())
+    const auto transform = use.extensions.find("KHR_texture_transform");
+    if (transform == use.extensions.end())
         return view;
     if (auto applied = apply_texture_transform(transform->second, view); !applied)
         return tl::unexpected(applied.error());

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "bakerd/map/import_state.h"
-
-#include <tiny_gltf.h>
+#include "bakerd/map/material_textures.h"
 
 #include <compare>
 #include <cstdint>
@@ -26,14 +25,9 @@ class TextureImporter {
   public:
     explicit TextureImporter(const ImportState& state) : state_(state) {}
 
-    // The texture that `info`, a tinygltf::TextureInfo or what looks like it, names, with its transform; a
-    // view of nothing when it names none. The sentence names neither file nor material; the caller does.
-    template <class TextureInfo>
-    [[nodiscard]] tl::expected<TextureView, std::string> view_of(const TextureInfo& info, Presence presence) {
-        if (info.index < 0)
-            return TextureView{};
-        return view_of(info.index, info.extensions, presence);
-    }
+    // The texture that is named, with its transform; a view of nothing when none is. The sentence names
+    // neither file nor material; the caller does.
+    [[nodiscard]] tl::expected<TextureView, std::string> view_of(const TextureUse& use, Presence presence);
 
   private:
     // A picture as materials use it: many may share one.
@@ -46,9 +40,6 @@ class TextureImporter {
         auto operator<=>(const Use&) const = default;
     };
 
-    [[nodiscard]] tl::expected<TextureView, std::string> view_of(int index,
-                                                                 const tinygltf::ExtensionMap& extensions,
-                                                                 Presence presence);
     [[nodiscard]] tl::expected<std::uint32_t, std::string> texture_index(int index, Presence presence);
     [[nodiscard]] tl::expected<Texture, std::string> decode(int image_index) const;
     [[nodiscard]] std::uint32_t keep(Texture texture);

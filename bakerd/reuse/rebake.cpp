@@ -1,5 +1,6 @@
 #include "bakerd/reuse/rebake.h"
 
+#include "bakerd/bake/artist_warnings.h"
 #include "bakerd/reuse/footprint_recorder.h"
 #include "bakerd/reuse/static_gain.h"
 

@@ -80,27 +80,29 @@ void resolve_late(Candidate& hit, const Query& query, const Ray& ray) {
 }
 
 bool is_there(const Candidate& hit) {
-    return !hit.set->mixed || trace::is_there({*hit.set->map,
-                                               *hit.set->primitive,
-                                               hit.set->triangle_of(hit.id.triangle),
-                                               hit.at->u,
-                                               hit.at->v});
+    return !hit.set->mixed || trace::is_there(point_of(*hit.set, hit.id.triangle, *hit.at));
+}
+
+bool is_wanted(const Candidate& hit, Collected wanted) {
+    switch (wanted) {
+        case Collected::there:
+            return is_there(hit);
+        case Collected::not_there:
+            return is_partly_there(*hit.set->material) && !is_there(hit);
+        case Collected::partly_there:
+            return is_partly_there(*hit.set->material);
+    }
+    return false;
+}
+
+// Whether it hides what lies behind.
+bool is_in_the_way(const Candidate& hit, const Query& query) {
+    return query.by_chance || !is_partly_there(*hit.set->material) ? is_there(hit) : false;
 }
 
 // Of two at the same distance the one of the smaller id is nearer.
 bool is_nearer(const Candidate& a, const Candidate& b) {
     return a.most_m < b.most_m || (a.most_m == b.most_m && (b.set == nullptr || a.id < b.id));
-}
-
-// Whether the end of the ray lies in the triangle's plane. The plane is met nowhere else, so that this is
-// what the ray ends on.
-bool holds_end(const Ray& ray, const Candidate& hit, const Scene& scene) {
-    const Triangle triangle =
-        transformed(scene.world_from_object(hit.id.instance), corners_of(*hit.set, hit.id.triangle));
-    const glm::dvec3 end = glm::dvec3(ray.origin) + glm::dvec3(ray.direction) * double{ray.far_m};
-    const glm::dvec3& normal = hit.at->normal;
-    const double across = std::abs(glm::dot(normal, end - triangle.a));
-    return across <= static_cast<double>(rounding_m(ray, ray.far_m)) * glm::length(normal);
 }
 
 // What lies farther is not looked at any more.
@@ -113,7 +115,7 @@ void accept(const RTCFilterFunctionNArguments& args, const Ray& ray, const Candi
 void collect(const Candidate& found, const Query& query, const Ray& ray) {
     Candidate hit = found;
     resolve(hit, query, ray);
-    if (hit.at && hit.at->distance_m <= double{ray.far_m} && is_there(hit))
+    if (hit.at && hit.at->distance_m <= double{ray.far_m} && is_wanted(hit, query.collected))
         query.crossings->push_back({hit.id, *hit.at});
 }
 
@@ -177,6 +179,16 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
     consider(*args, {id, &set, 0, 0, true, {}}, query, ray);
 }
 
+// The plane is met nowhere else, so that this is what the ray ends on.
+bool holds_end(const Ray& ray, const TriangleSet& set, const Crossing& crossing, const Scene& scene) {
+    const Triangle triangle =
+        transformed(scene.world_from_object(crossing.id.instance), corners_of(set, crossing.id.triangle));
+    const glm::dvec3 end = glm::dvec3(ray.origin) + glm::dvec3(ray.direction) * double{ray.far_m};
+    const glm::dvec3& normal = crossing.at.normal;
+    const double across = std::abs(glm::dot(normal, end - triangle.a));
+    return across <= static_cast<double>(rounding_m(ray, ray.far_m)) * glm::length(normal);
+}
+
 void occluded_filter(const RTCFilterFunctionNArguments* args) {
     const auto& query = *reinterpret_cast<const Query*>(args->context);
     const auto& set = *static_cast<const TriangleSet*>(args->geometryUserPtr);
@@ -195,8 +207,8 @@ void occluded_filter(const RTCFilterFunctionNArguments* args) {
         }
         Candidate hit{id, &set, 0, 0, true, {}};
         resolve(hit, query, ray);
-        const bool hides = hit.at && hit.most_m <= ray.far_m && is_there(hit) &&
-                           !(query.to_surface && holds_end(ray, hit, query.scene));
+        const bool hides = hit.at && hit.most_m <= ray.far_m && is_in_the_way(hit, query) &&
+                           !(query.to_surface && holds_end(ray, *hit.set, {hit.id, *hit.at}, query.scene));
         if (!hides)
             args->valid[n] = 0;
     }

@@ -115,6 +115,12 @@ struct Closest {
     }
 };
 
+enum class Collected : std::uint8_t {
+    there,        // what is there (is_there)
+    not_there,    // what is partly there, and lets the ray through
+    partly_there  // what may let the ray through, whether it does or not
+};
+
 // REQUIRES: `base` stays the first member, Embree hands back a pointer to it.
 struct Query {
     RTCIntersectContext base;
@@ -122,12 +128,21 @@ struct Query {
     std::span<const Ray>
         rays;         // in the world, by RTCRay::id: an instance's filter gets them in its own space
     Closest closest;  // of `rays[0]`
-    std::vector<Crossing>* crossings = nullptr;  // collect every hit instead of the closest
+    // Collect hits instead of looking for the closest.
+    std::vector<Crossing>* crossings = nullptr;
+    Collected collected = Collected::there;
+    bool by_chance = true;    // occlusion: what is partly there hides by a coin; else not at all
     bool to_surface = false;  // occlusion: rays end on surfaces, which do not hide that end
 
     Query(const Scene& asked, std::span<const Ray> asked_rays) : scene(asked), rays(asked_rays) {
         rtcInitIntersectContext(&base);
     }
 };
+
+// Whether the end of the ray lies in the plane of a triangle that it crosses.
+[[nodiscard]] bool holds_end(const Ray& ray,
+                             const TriangleSet& set,
+                             const Crossing& crossing,
+                             const Scene& scene);
 
 }  // namespace drtv::trace

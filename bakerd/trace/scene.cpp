@@ -68,11 +68,12 @@ bool Scene::meets_front(std::uint32_t instance, const Intersection& at, const Ra
     return (glm::dot(at.normal, glm::dvec3(ray.direction)) < 0) != instances_[instance].mirrored;
 }
 
-// Every triangle that the ray meets, once, in the order of their ids.
-std::vector<Crossing> Scene::all_crossings(const Ray& ray) const {
+// Every triangle that the ray meets and that is wanted, once, in the order of their ids.
+std::vector<Crossing> Scene::all_crossings(const Ray& ray, Collected wanted) const {
     std::vector<Crossing> crossings;
     Query query(*this, {&ray, 1});
     query.crossings = &crossings;
+    query.collected = wanted;
     // Of a short piece of a ray that grazes a surface too, Embree's error must not lose the hit.
     const float far_m = ray.far_m + query_slack(ray, ray.far_m) + 1;
     const Sides sides(ray);
@@ -118,8 +119,36 @@ void Scene::occluded(std::span<const Ray> rays, std::vector<bool>& answers) cons
         answers.push_back(stream[n].tfar < 0 || (Sides(rays[n]).count > 1 && occluded(rays[n])));
 }
 
+Scene::Passed Scene::passed(const Ray& ray) const {
+    Passed passed;
+    for (const Crossing& pane : all_crossings(ray, Collected::not_there)) {
+        const TrianglePoint point =
+            point_of(set_of(pane.id.instance, pane.id.set), pane.id.triangle, pane.at);
+        passed.tint *= tint_at(point);
+        passed.share *= passed_at(point);
+    }
+    return passed;
+}
+
+glm::vec3 Scene::share_seen(const Ray& ray) const {
+    Query query(*this, {&ray, 1});
+    query.to_surface = true;
+    query.by_chance = false;
+    if (is_met(std::move(query), ray))
+        return glm::vec3(0);
+    glm::vec3 share(1);
+    if (!kinds_.partly_there)
+        return share;
+    for (const Crossing& pane : all_crossings(ray, Collected::partly_there)) {
+        const TriangleSet& set = set_of(pane.id.instance, pane.id.set);
+        if (!holds_end(ray, set, pane, *this))
+            share *= passed_at(point_of(set, pane.id.triangle, pane.at));
+    }
+    return share;
+}
+
 std::size_t Scene::crossings(const Ray& ray) const {
-    const std::vector<Crossing> crossings = all_crossings(ray);
+    const std::vector<Crossing> crossings = all_crossings(ray, Collected::there);
     const auto is_front = [&](const Crossing& c) { return meets_front(c.id.instance, c.at, ray); };
     // Of a front and a back in one plane the front alone counts.
     const auto makes_way = [&](const Crossing& back) {
@@ -157,7 +186,7 @@ void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
     // The line's ends are constants: were they taken from the scene, its rounding would depend on far
     // objects.
     const Ray line{glm::vec3(at, map::max_height_m), glm::vec3(0, 0, -1), 2 * map::max_height_m};
-    for (const Crossing& crossing : all_crossings(line)) {
+    for (const Crossing& crossing : all_crossings(line, Collected::there)) {
         const map::Object& object = map_->objects[object_index(crossing.id.instance)];
         if (object.role == map::Role::vegetation)
             continue;

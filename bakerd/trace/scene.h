@@ -24,6 +24,7 @@ namespace drtv::trace {
 
 // query.h
 struct Candidate;
+enum class Collected : std::uint8_t;
 struct Crossing;
 struct Query;
 
@@ -77,6 +78,17 @@ class Scene {
     [[nodiscard]] bool hides_surface(const Ray& ray) const;
     // The same for many rays at once, which Embree does faster where they are incoherent.
     void occluded(std::span<const Ray> rays, std::vector<bool>& answers) const;
+    // What clear glass that lets the ray through does to it: alpha alone colours nothing.
+    struct Passed {
+        glm::vec3 tint{1};  // what its light is multiplied with, at most 1
+        glm::vec3 share{
+            1};  // of light that would go the same way again: what lets it through, without chance
+    };
+    [[nodiscard]] Passed passed(const Ray& ray) const;
+    [[nodiscard]] bool has_glass() const { return kinds_.glass; }
+    // The share of light that comes along a ray that ends on a light, by channel, as hides_surface has it,
+    // but without chance: for rays that stand alone and not for many.
+    [[nodiscard]] glm::vec3 share_seen(const Ray& ray) const;
     // How many surfaces the ray crosses; a front and a back in one plane are one.
     [[nodiscard]] std::size_t crossings(const Ray& ray) const;
 
@@ -125,7 +137,7 @@ class Scene {
     void add_in_world_space(std::uint32_t object, const Region& region, float reach_m);
     [[nodiscard]] bool is_met(Query query, const Ray& ray) const;
     [[nodiscard]] Hit hit_at(const Candidate& candidate, const Intersection& at, const Ray& ray) const;
-    [[nodiscard]] std::vector<Crossing> all_crossings(const Ray& ray) const;
+    [[nodiscard]] std::vector<Crossing> all_crossings(const Ray& ray, Collected wanted) const;
     [[nodiscard]] const TriangleSet& set_of(std::uint32_t instance, std::uint32_t embree_geometry) const;
 
     std::shared_ptr<const Device> device_;
@@ -136,6 +148,7 @@ class Scene {
     // geometry ids follow those of all instances.
     std::vector<std::unique_ptr<TriangleSet>> world_sets_;
     map::Bounds bounds_;
+    Kinds kinds_;
     RTCSceneTy* handle_ = nullptr;
 };
 

@@ -51,11 +51,14 @@ std::shared_ptr<const Scene> Scene::build(MapGeometry& geometry, const Region& r
             continue;
         }
         std::shared_ptr<const MeshBvh>& bvh = by_mesh[object.mesh];
-        if (!bvh)
+        if (!bvh) {
             bvh = geometry.bvh_of(object.mesh);
+            scene->kinds_ |= bvh->kinds();
+        }
         scene->add_instance(n, *bvh);
     }
     rtcCommitScene(scene->handle_);
+    scene->kinds_ |= kinds_of(scene->world_sets_);
     for (auto& bvh : by_mesh) {
         if (bvh)
             scene->meshes_.push_back(std::move(bvh));

@@ -76,34 +76,44 @@ float coin_at(const TrianglePoint& point) {
     return static_cast<float>(bits >> 40) * 0x1p-24f;
 }
 
-}  // namespace
-
-float alpha_at(const TrianglePoint& point) {
+glm::vec3 unfiltered_colour(const TrianglePoint& point) {
     const map::Primitive& primitive = point.primitive;
-    const map::Material& material = point.material();
-    float alpha = material.base_colour.w;
+    const map::TextureView& view = point.material().base_texture;
+    glm::vec3 colour(point.material().base_colour);
     if (!primitive.colours.empty())
-        alpha *= interpolate(primitive.colours, point).w;
-    if (material.base_texture.present())
-        alpha *= map::sample_alpha(point.map.textures[material.base_texture.texture],
-                                   viewed(material.base_texture, interpolate(primitive.uvs, point)));
-    return alpha;
+        colour *= glm::vec3(interpolate(primitive.colours, point));
+    if (view.present())
+        colour *= glm::vec3(
+            map::sample(point.map.textures[view.texture], viewed(view, interpolate(primitive.uvs, point))));
+    return glm::clamp(colour, 0.0f, 1.0f);
 }
 
-bool is_there(const TrianglePoint& point) {
+// The share of what is there that is clear glass.
+float clear_share(const TrianglePoint& point) {
+    const map::Material& material = point.material();
+    const map::TextureView& view = material.transmission_texture;
+    if (!(material.transmission > 0) || !view.present())
+        return material.transmission;
+    const glm::vec2 uv = viewed(view, interpolate(point.primitive.transmission_uvs, point));
+    return material.transmission * map::sample_red(point.map.textures[view.texture], uv);
+}
+
+// How much of the point alpha leaves, in [0, 1].
+float presence_at(const TrianglePoint& point) {
     const map::Material& material = point.material();
     switch (material.alpha_mode) {
         case map::AlphaMode::opaque:
-            return true;
+            return 1;
         case map::AlphaMode::mask:
-            return alpha_at(point) >= material.alpha_cutoff;
+            return alpha_at(point) >= material.alpha_cutoff ? 1.0f : 0.0f;
         case map::AlphaMode::blend:
-            return alpha_at(point) > coin_at(point);
+            return alpha_at(point);
     }
-    return true;
+    return 1;
 }
 
-Presence presence_of(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle) {
+// As presence_of, by alpha alone.
+Presence presence_of_alpha(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle) {
     const map::Material& material = map.materials[primitive.material];
     if (material.alpha_mode == map::AlphaMode::opaque)
         return Presence::whole;
@@ -138,6 +148,56 @@ Presence presence_of(const map::Map& map, const map::Primitive& primitive, std::
     return high <= 0 ? Presence::nowhere : Presence::mixed;
 }
 
+}  // namespace
+
+float alpha_at(const TrianglePoint& point) {
+    const map::Primitive& primitive = point.primitive;
+    const map::Material& material = point.material();
+    float alpha = material.base_colour.w;
+    if (!primitive.colours.empty())
+        alpha *= interpolate(primitive.colours, point).w;
+    if (material.base_texture.present())
+        alpha *= map::sample_alpha(point.map.textures[material.base_texture.texture],
+                                   viewed(material.base_texture, interpolate(primitive.uvs, point)));
+    return alpha;
+}
+
+bool is_there(const TrianglePoint& point) {
+    const map::Material& material = point.material();
+    const float present = presence_at(point);
+    if (!is_partly_there(material))
+        return present > 0;
+    if (!(material.transmission > 0))
+        return present > coin_at(point);
+    const float clear = clear_share(point) * map::brightest(unfiltered_colour(point));
+    return present * (1 - clear) > coin_at(point);
+}
+
+glm::vec3 tint_at(const TrianglePoint& point) {
+    // What alpha takes away colours nothing.
+    if (!(point.material().transmission > 0) || presence_at(point) <= coin_at(point))
+        return glm::vec3(1);
+    const glm::vec3 colour = unfiltered_colour(point);
+    const float most = map::brightest(colour);
+    return most > 0 ? colour / most : glm::vec3(1);
+}
+
+glm::vec3 passed_at(const TrianglePoint& point) {
+    const float present = presence_at(point);
+    glm::vec3 passed(1 - present);
+    if (point.material().transmission > 0)
+        passed += unfiltered_colour(point) * (present * clear_share(point));
+    return passed;
+}
+
+Presence presence_of(const map::Map& map, const map::Primitive& primitive, std::uint32_t triangle) {
+    const map::Material& material = map.materials[primitive.material];
+    if (!has_holes(material))
+        return Presence::whole;
+    const Presence of_alpha = presence_of_alpha(map, primitive, triangle);
+    return of_alpha == Presence::whole && material.transmission > 0 ? Presence::mixed : of_alpha;
+}
+
 float most_scattered(const map::Map& map) {
     std::set<std::pair<std::uint32_t, bool>> seen;  // meshes, as vegetation or not
     std::map<std::uint32_t, glm::vec3> of_textures;
@@ -150,9 +210,10 @@ float most_scattered(const map::Map& map) {
             const map::Material& material = map.materials[primitive.material];
             const auto scattered = [&](const glm::vec3& colour) {
                 const float albedo = std::min(map::brightest(colour), map::max_albedo);
-                if (material.transmission > 0)
-                    return albedo * (1 - material.transmission) +
-                           std::min(map::brightest(material.transmission_colour) * material.transmission,
+                if (material.diffuse_transmission > 0)
+                    return albedo * (1 - material.diffuse_transmission) +
+                           std::min(map::brightest(material.diffuse_transmission_colour) *
+                                        material.diffuse_transmission,
                                     map::max_albedo);
                 return is_leaf(material, object.role)
                            ? std::min(albedo * (1 + leaf_transmission), map::max_albedo)
@@ -202,11 +263,19 @@ Surface surface_at(const TrianglePoint& point, map::Role role, bool front, const
         colour *= filtered(point, material.base_texture, primitive.uvs, footprint);
     Surface surface;
     surface.albedo = glm::clamp(colour, 0.0f, map::max_albedo);
-    if (material.transmission > 0) {
-        surface.transmitted = material.transmission_colour * material.transmission;
-        surface.albedo *= 1 - material.transmission;
+    if (material.diffuse_transmission > 0) {
+        surface.transmitted = material.diffuse_transmission_colour * material.diffuse_transmission;
+        surface.albedo *= 1 - material.diffuse_transmission;
     } else if (is_leaf(material, role)) {
         surface.transmitted = surface.albedo * leaf_transmission;
+    }
+    if (material.transmission > 0) {
+        // Of what is there no light goes straight on any more: that is where it is not there (is_there).
+        const float clear = clear_share(point);
+        const float there = 1 - clear * map::brightest(unfiltered_colour(point));
+        const float scattered = there > 0 ? (1 - clear) / there : 0;
+        surface.albedo *= scattered;
+        surface.transmitted *= scattered;
     }
     const glm::vec3 total = surface.albedo + surface.transmitted;
     for (glm::length_t k = 0; k < 3; ++k) {

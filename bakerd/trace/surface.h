@@ -21,7 +21,18 @@ inline constexpr float leaf_transmission = 0.5f;
 
 // Leaves reflect on both sides, whatever the exporter says, and what lets light through has no blind side.
 [[nodiscard]] inline bool is_two_sided(const map::Material& material, map::Role role) {
-    return role == map::Role::vegetation || material.double_sided || material.transmission > 0;
+    return role == map::Role::vegetation || material.double_sided || material.diffuse_transmission > 0 ||
+           material.transmission > 0;
+}
+
+// Whether it may be there in parts only: alpha is looked at, or clear glass.
+[[nodiscard]] inline bool has_holes(const map::Material& material) {
+    return material.alpha_mode != map::AlphaMode::opaque || material.transmission > 0;
+}
+
+// Whether chance decides where it is there.
+[[nodiscard]] inline bool is_partly_there(const map::Material& material) {
+    return material.alpha_mode == map::AlphaMode::blend || material.transmission > 0;
 }
 
 // A point of a mesh's triangle. Barycentric u, v weigh its second and third vertex.
@@ -46,8 +57,15 @@ struct Footprint {
 
 // Whether the surface is there: opaque ones are, masked ones by their cutoff, blended ones with the
 // probability of their alpha, by a hash of the point: at another point the coin falls anew, at the same one
-// never.
+// never. Where there is clear glass, it is not there with the share of light that it lets straight through in
+// the brightest channel: so no path is worth more behind it than before.
 [[nodiscard]] bool is_there(const TrianglePoint& point);
+
+// What light that passes clear glass is multiplied with. REQUIRES: !is_there(point).
+[[nodiscard]] glm::vec3 tint_at(const TrianglePoint& point);
+
+// The share of light that goes straight through at the point, by channel, without chance.
+[[nodiscard]] glm::vec3 passed_at(const TrianglePoint& point);
 
 enum class Presence : std::uint8_t { nowhere, mixed, whole };
 

@@ -25,7 +25,7 @@ std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
         TriangleSet mixed = whole;
         mixed.mixed = true;
         const auto count = static_cast<std::uint32_t>(primitive.triangles.size());
-        if (whole.material->alpha_mode == map::AlphaMode::opaque && !wanted) {
+        if (!has_holes(*whole.material) && !wanted) {
             sets.push_back(std::make_unique<TriangleSet>(std::move(whole)));
             continue;
         }
@@ -44,6 +44,13 @@ std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
         }
     }
     return sets;
+}
+
+Kinds kinds_of(std::span<const std::unique_ptr<TriangleSet>> sets) {
+    Kinds kinds;
+    for (const auto& set : sets)
+        kinds |= {set->material->transmission > 0, is_partly_there(*set->material)};
+    return kinds;
 }
 
 void attach(RTCDeviceTy* device,

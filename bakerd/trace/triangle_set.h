@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bakerd/map/map.h"
+#include "bakerd/trace/surface.h"
 #include "bakerd/trace/triangle.h"
 
 #include <glm/mat4x3.hpp>
@@ -9,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 struct RTCDeviceTy;
@@ -44,12 +46,30 @@ struct TriangleSet {
     return {p[t.x], p[t.y], p[t.z]};
 }
 
+[[nodiscard]] inline TrianglePoint point_of(const TriangleSet& set,
+                                            std::uint32_t triangle_of_set,
+                                            const Intersection& at) {
+    return {*set.map, *set.primitive, set.triangle_of(triangle_of_set), at.u, at.v};
+}
+
 // The sets of a mesh, in the order of its primitives: of each first what is there everywhere, then what is
 // mixed. With `wanted`, of those triangles of a primitive alone for which it holds.
 using WantedTriangle = std::function<bool(const map::Primitive&, const glm::uvec3&)>;
 [[nodiscard]] std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
                                                                       const map::Mesh& mesh,
                                                                       const WantedTriangle& wanted = {});
+
+// What there is of a kind that asks for more than a hit.
+struct Kinds {
+    bool glass = false;         // light goes straight through, in its colour
+    bool partly_there = false;  // glass or blended
+    Kinds& operator|=(const Kinds& other) {
+        glass = glass || other.glass;
+        partly_there = partly_there || other.partly_there;
+        return *this;
+    }
+};
+[[nodiscard]] Kinds kinds_of(std::span<const std::unique_ptr<TriangleSet>> sets);
 
 // Attaches the set to the scene under the id. REQUIRES: the set outlives the scene.
 void attach(RTCDeviceTy* device,

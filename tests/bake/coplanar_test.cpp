@@ -88,10 +88,8 @@ Shape open_room() {
 struct Side {
     glm::vec3 low, high;
 };
-constexpr std::array<Side, 4> neighbours = {Side{{4, 0, -6}, {15, 3.5f, 7}},
-                                            Side{{-12, 0, -5}, {-4, 4, 6}},
-                                            Side{{-7, -1, 4}, {9, 3, 18}},
-                                            Side{{-6, 0, -15}, {7, 3.9f, -4}}};
+constexpr std::array<Side, 4> neighbours = {Side{{4, 0, -6}, {15, 3.5f, 7}}, Side{{-12, 0, -5}, {-4, 4, 6}},
+                                            Side{{-7, -1, 4}, {9, 3, 18}}, Side{{-6, 0, -15}, {7, 3.9f, -4}}};
 
 enum class Kit { alone, instanced, different, one_mesh, double_sided };
 
@@ -160,8 +158,7 @@ void expect_lit_by(const bake::ProbeLight& light, const glm::dvec3& to_lamp, dou
     for (std::size_t b = 0; b < basis_count; ++b) {
         const glm::dvec3 axis(transfer_basis[b][0], transfer_basis[b][1], transfer_basis[b][2]);
         const double cosine = std::max(0.0, glm::dot(to_lamp, axis)) / std::sqrt(square);
-        EXPECT_NEAR(light.static_irradiance[0][b],
-                    candela / 683 / square * cosine * std::numbers::inv_pi,
+        EXPECT_NEAR(light.static_irradiance[0][b], candela / 683 / square * cosine * std::numbers::inv_pi,
                     1e-3 * candela / 683 / square);
     }
 }
@@ -170,11 +167,13 @@ void expect_lit_by(const bake::ProbeLight& light, const glm::dvec3& to_lamp, dou
 TEST(FlushLamp, LightsTheWholeRoom) {
     constexpr double candela = 6830;
     for (const Site& site : sites()) {
-        for (const glm::dvec3& lamp : {glm::dvec3(0, 2, 0), {0, 2 - 1e-6, 0}, {4, 2, 1}, {-4, 2, 4}, {1, 0.5, -4}}) {
+        for (const glm::dvec3& lamp :
+             {glm::dvec3(0, 2, 0), {0, 2 - 1e-6, 0}, {4, 2, 1}, {-4, 2, 4}, {1, 0.5, -4}}) {
             for (const bool double_sided : {false, true}) {
                 SCOPED_TRACE(site.name + " " + std::to_string(lamp.x) + " " + std::to_string(lamp.y));
                 Building building(site);
-                building.place(room({-4, -2, -4}, {4, 2, 4}), plaster(building.builder, double_sided, {0, 0, 0, 1}));
+                building.place(room({-4, -2, -4}, {4, 2, 4}),
+                               plaster(building.builder, double_sided, {0, 0, 0, 1}));
                 building.lamp(lamp, candela);
                 const auto world = building.open();
                 for (const glm::dvec3& probe :

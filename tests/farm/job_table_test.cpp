@@ -108,7 +108,7 @@ TEST_F(JobTableTest, WarningsComeByRowThenColumn) {
         row.warnings = std::move(warnings);
         write([&](Connection& connection) { EXPECT_TRUE(record_sector(connection, row)); });
     };
-    add({5, 1}, {"d"});
+    add({5, 1}, {"d", "a"});  // what was said is not said again
     add({-2, 0}, {"b", "c"});
     add({7, -1}, {"a"});
     add({3, -2}, {});

@@ -28,18 +28,18 @@ TEST(Transmission, FactorAndColourAreRead) {
     Pane pane;
     pane.extension = {{"diffuseTransmissionFactor", 0.25},
                       {"diffuseTransmissionColorFactor", {0.5, 1, 0.125}}};
-    EXPECT_EQ(pane.worn().transmission, 0.25f);
-    EXPECT_EQ(pane.worn().transmission_colour, glm::vec3(0.5f, 1, 0.125f));
+    EXPECT_EQ(pane.worn().diffuse_transmission, 0.25f);
+    EXPECT_EQ(pane.worn().diffuse_transmission_colour, glm::vec3(0.5f, 1, 0.125f));
 }
 
 TEST(Transmission, IsNoneOfWhiteByDefault) {
     Pane pane;
-    EXPECT_EQ(pane.worn().transmission, 0);
+    EXPECT_EQ(pane.worn().diffuse_transmission, 0);
     pane.extension["diffuseTransmissionFactor"] = 1;
-    EXPECT_EQ(pane.worn().transmission, 1);
-    EXPECT_EQ(pane.worn().transmission_colour, glm::vec3(1));
+    EXPECT_EQ(pane.worn().diffuse_transmission, 1);
+    EXPECT_EQ(pane.worn().diffuse_transmission_colour, glm::vec3(1));
     pane.b.json["materials"][0].erase("extensions");
-    EXPECT_EQ(pane.worn().transmission, 0);
+    EXPECT_EQ(pane.worn().diffuse_transmission, 0);
 }
 
 TEST(Transmission, OutOfRangeIsRefused) {
@@ -75,7 +75,7 @@ TEST(Transmission, PicturesOfItAreIgnoredWithAWarning) {
         pane.b.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.5, 0.5, 1};
         const Map map = expect_accepted(pane.import());
         EXPECT_TRUE(map.textures.empty());
-        EXPECT_EQ(map.materials.at(map.meshes.at(0).primitives.at(0).material).transmission, 0.5f);
+        EXPECT_EQ(map.materials.at(map.meshes.at(0).primitives.at(0).material).diffuse_transmission, 0.5f);
         ASSERT_EQ(map.warnings.size(), 1u);
         for (const std::string& part :
              {std::string("map.gltf"), std::string("material 0 ('pane')"), texture, std::string("ignored")})

@@ -181,16 +181,16 @@ SurfaceHit Scene::surface(const Triangle& triangle, const Crossing& at, const gl
     hit.distance_m = at.distance_m;
     hit.normal = on_front ? front : -front;
     if (!on_front && !triangle.twin && !material.double_sided && !worn.vegetation &&
-        !(material.transmission > 0)) {
+        !(material.diffuse_transmission > 0)) {
         hit.absorbs = true;
         return hit;
     }
     const glm::dvec3 base = glm::clamp(glm::dvec3(colour(triangle, at)), 0.0, albedo_limit);
     hit.reflected = base;
-    if (material.transmission > 0) {
-        hit.reflected = base * (1 - static_cast<double>(material.transmission));
-        hit.transmitted =
-            glm::dvec3(material.transmission_colour) * static_cast<double>(material.transmission);
+    if (material.diffuse_transmission > 0) {
+        hit.reflected = base * (1 - static_cast<double>(material.diffuse_transmission));
+        hit.transmitted = glm::dvec3(material.diffuse_transmission_colour) *
+                          static_cast<double>(material.diffuse_transmission);
     } else if (worn.vegetation && (material.double_sided || material.alpha_mode != map::AlphaMode::opaque)) {
         hit.transmitted = base * leaf_transmission;
     }

@@ -42,8 +42,8 @@ TEST(Surface, SumOfBackAndThroughIsAtMostTheLargestAlbedo) {
         material.double_sided = random() % 2 == 0;
         material.alpha_mode = static_cast<AlphaMode>(random() % 3);
         if (n % 2 == 0)
-            material.transmission = n % 4 == 0 ? 1 : between(random, 0, 1);
-        material.transmission_colour = n % 3 == 0 ? glm::vec3(1) : colour();
+            material.diffuse_transmission = n % 4 == 0 ? 1 : between(random, 0, 1);
+        material.diffuse_transmission_colour = n % 3 == 0 ? glm::vec3(1) : colour();
         if (n % 7 == 0)
             skin.primitive.colours.assign(3, glm::vec4(colour(), 1));
         const Surface surface =
@@ -64,8 +64,8 @@ TEST(Surface, SumOfBackAndThroughIsAtMostTheLargestAlbedo) {
 
 TEST(Surface, LimitKeepsTheShares) {
     Skin skin(glm::vec3(1, 0.5f, 0));
-    skin.material().transmission = 0.25f;
-    skin.material().transmission_colour = {1, 1, 1};
+    skin.material().diffuse_transmission = 0.25f;
+    skin.material().diffuse_transmission_colour = {1, 1, 1};
     const Surface surface = skin.at(true);
     // 0.95 * 0.75 beside 0.25 is over the limit; 0.5 * 0.75 beside 0.25 is not.
     const float total = 0.95f * 0.75f + 0.25f;
@@ -75,8 +75,8 @@ TEST(Surface, LimitKeepsTheShares) {
 
 TEST(Surface, TransmissionTakesFromWhatComesBack) {
     Skin skin(glm::vec3(0.5f));
-    skin.material().transmission = 0.5f;
-    skin.material().transmission_colour = {0.5f, 1, 0};
+    skin.material().diffuse_transmission = 0.5f;
+    skin.material().diffuse_transmission_colour = {0.5f, 1, 0};
     for (const Role role : {Role::fixed, Role::vegetation}) {
         for (const bool front : {true, false}) {
             const Surface surface = skin.at(front, role);
@@ -138,8 +138,8 @@ TEST(MostScattered, NoSurfaceScattersMore) {
         material.double_sided = random() % 2 == 0;
         material.alpha_mode = static_cast<AlphaMode>(random() % 3);
         if (n % 3 == 0)
-            material.transmission = n % 6 == 0 ? 1 : between(random, 0, 1);
-        material.transmission_colour = colour(1);
+            material.diffuse_transmission = n % 6 == 0 ? 1 : between(random, 0, 1);
+        material.diffuse_transmission_colour = colour(1);
         if (n % 4 == 0)
             skin.primitive.colours = {glm::vec4(colour(1.5f), 1), glm::vec4(colour(1), 1),
                                       glm::vec4(colour(0.5f), 1)};
@@ -202,7 +202,7 @@ TEST(SurfaceEmission, OfTheBackIsNoneUnlessDoubleSided) {
     EXPECT_EQ(skin.at(true, Role::vegetation).emission, red);
     EXPECT_EQ(skin.at(false, Role::vegetation).emission, none);
     EXPECT_FALSE(skin.at(false, Role::vegetation).absorbs);
-    skin.material().transmission = 0.5f;
+    skin.material().diffuse_transmission = 0.5f;
     EXPECT_EQ(skin.at(false).emission, none);
     EXPECT_FALSE(skin.at(false).absorbs);
     skin.material().double_sided = true;
