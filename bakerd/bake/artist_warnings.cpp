@@ -29,7 +29,9 @@ std::string object_name(const map::Map& map, std::uint32_t object) {
 // Below a lid as wide as the reach some sky is left at the horizon.
 bool sees_hardly_any_sky(const Probe& probe) {
     constexpr float hardly_any = 0.1f;
-    return std::ranges::all_of(probe.sky_visibility, [](std::int16_t code) { return decode_fixed(code, sky_visibility_scale) < hardly_any; });
+    return std::ranges::all_of(probe.sky_visibility, [](std::int16_t code) {
+        return decode_fixed(code, sky_visibility_scale) < hardly_any;
+    });
 }
 
 bool is_in(const glm::vec3& point, map::SectorCoordinate sector) {
@@ -41,7 +43,8 @@ bool is_in(const glm::vec3& point, map::SectorCoordinate sector) {
 glm::vec3 direction_of(std::uint32_t n, std::uint32_t count) {
     constexpr float golden = 0.61803399f;
     const float turn = static_cast<float>(n) * golden;
-    return uniform_sphere({(static_cast<float>(n) + 0.5f) / static_cast<float>(count), turn - std::floor(turn)});
+    return uniform_sphere(
+        {(static_cast<float>(n) + 0.5f) / static_cast<float>(count), turn - std::floor(turn)});
 }
 
 // The object that keeps all light of the lamp in; nothing where some ray comes farther than that.
@@ -128,14 +131,14 @@ void warn_of_enclosed_lamps(const trace::Scene& scene,
             continue;
         const std::optional<std::uint32_t> shell = shell_of(point_light(light), near_m, scene);
         if (shell)
-            warnings.push_back(
-                fmt::format("the light {} at ({:.2f}, {:.2f}, {:.2f}) is enclosed by {}, and lights nothing "
-                            "else: move it out, let that glow itself, or leave it out with bake_role 'ignore'",
-                            shown_name(light.name, "one"),
-                            light.position.x,
-                            light.position.y,
-                            light.position.z,
-                            object_name(scene.map(), *shell)));
+            warnings.push_back(fmt::format(
+                "the light {} at ({:.2f}, {:.2f}, {:.2f}) is enclosed by {}, and lights nothing "
+                "else: move it out, let that glow itself, or leave it out with bake_role 'ignore'",
+                shown_name(light.name, "one"),
+                light.position.x,
+                light.position.y,
+                light.position.z,
+                object_name(scene.map(), *shell)));
     }
 }
 

@@ -29,8 +29,8 @@ void warn_of_back_hits(const map::Map& map,
                        std::span<const BackHits> of_probes,
                        std::vector<std::string>& warnings);
 
-// Where no probe sees more than a rim of sky, because one object lies high above nearly all of them: a dome or a lid that is
-// meant to be the sky.
+// Where no probe sees more than a rim of sky, because one object lies high above nearly all of them: a dome
+// or a lid that is meant to be the sky.
 void warn_of_closed_sky(const trace::Scene& scene,
                         const Sector& sector,
                         std::span<const placement::Position> probes,

@@ -56,11 +56,10 @@ float order_of(const TriangleSet& set,
 }
 
 // In the space of the object the front is counter-clockwise, however the object is turned over.
-bool meets_front(const Query& query, const TriangleSet& set, const EmbreeHit& hit) {
+bool meets_front(const TriangleSet& set, const EmbreeHit& hit) {
     const float facing =
         hit.normal.x * hit.direction.x + hit.normal.y * hit.direction.y + hit.normal.z * hit.direction.z;
-    const bool in_world_space = set.instance != UINT32_MAX;
-    return (facing < 0) != (in_world_space && query.scene.mirrors(set.instance));
+    return (facing < 0) != set.mirrored;
 }
 
 // Works the intersection out; what is met nowhere lies infinitely far.
@@ -128,11 +127,13 @@ void consider(const RTCFilterFunctionNArguments& args, Candidate hit, Query& que
     if (is_nearer(hit, closest.hit)) {
         if (!is_there(hit))
             return;
-        closest.place_of_closer(hit.front) = hit;
+        closest.place_of_closer(hit.front, hit.most_m, ray) = hit;
         accept(args, ray, hit);
     } else if (hit.front && !closest.hit.front) {
-        resolve_late(closest.front, query, ray);
-        if (is_nearer(hit, closest.front) && is_there(hit))
+        if (closest.front)
+            resolve_late(*closest.front, query, ray);
+        const bool is_first = !closest.front || is_nearer(hit, *closest.front);
+        if (is_first && hit.most_m <= ray.far_m && is_there(hit))
             closest.front = hit;
     }
 }
@@ -157,12 +158,12 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
         const float doubt_m = query_slack(ray, offered.distance_m) * 0.5f;
         const float least_m = offered.distance_m - doubt_m;
         const float most_m = offered.distance_m + doubt_m;
-        const bool front = meets_front(query, set, offered);
+        const bool front = meets_front(set, offered);
         const Candidate& closest = query.closest.hit;
         if (least_m > closest.most_m && (closest.front || !front))
             return;
         if (most_m < closest.least_m) {
-            Candidate& closer = query.closest.place_of_closer(front);
+            Candidate& closer = query.closest.place_of_closer(front, most_m, ray);
             closer.id = id;
             closer.set = &set;
             closer.least_m = least_m;

@@ -94,22 +94,30 @@ struct Candidate {
     std::optional<Intersection> at;    // if worked out; then both are order_of
 };
 
-// How far Embree is asked to look when this is the closest so far: behind a back, for a front in its plane.
+// How far behind a back a front can be in its plane.
+[[nodiscard]] inline float plane_slack(const Ray& ray, float back_m) {
+    return query_slack(ray, back_m);
+}
+
+// How far Embree is asked to look when this is the closest so far.
 [[nodiscard]] inline float limit_of(const Ray& ray, const Candidate& closest) {
-    const float slack_m = query_slack(ray, closest.most_m);
-    return closest.most_m + (closest.front ? slack_m : 2 * slack_m);
+    const float limit_m = closest.most_m + query_slack(ray, closest.most_m);
+    return closest.front ? limit_m : limit_m + plane_slack(ray, closest.most_m);
 }
 
 // The closest hit so far. The front of a surface in whose plane the back of another lies is what a ray meets
 // of both, whichever rounding makes the closer one: the walls of rooms touch that way. So as long as the
 // closest is a back, the closest front behind it is kept as well.
 struct Closest {
-    Candidate hit;    // before there is one: the end of the ray
-    Candidate front;  // says something only while `hit` is a back
+    Candidate hit;                   // before there is one: the end of the ray
+    std::optional<Candidate> front;  // says something only while `hit` is a back
 
-    // Where a closer one goes.
-    [[nodiscard]] Candidate& place_of_closer(bool is_front) {
-        if (hit.front && !is_front)
+    // Where a closer one goes, which is at most so far.
+    [[nodiscard]] Candidate& place_of_closer(bool is_front, float most_m, const Ray& ray) {
+        if (is_front || !hit.front)
+            return hit;
+        front.reset();
+        if (hit.set != nullptr && hit.least_m <= most_m + plane_slack(ray, most_m))
             front = hit;
         return hit;
     }

@@ -40,10 +40,10 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
     if (closest.hit.set == nullptr)
         return std::nullopt;
     const Intersection at = intersection_of(closest.hit, *this, ray);
-    if (!closest.hit.front && closest.front.set != nullptr) {
-        const Intersection of_front = intersection_of(closest.front, *this, ray);
+    if (!closest.hit.front && closest.front) {
+        const Intersection of_front = intersection_of(*closest.front, *this, ray);
         if (in_one_plane(ray, at, of_front))
-            return hit_at(closest.front, of_front, ray);
+            return hit_at(*closest.front, of_front, ray);
     }
     return hit_at(closest.hit, at, ray);
 }

@@ -116,7 +116,6 @@ class Scene {
         return instances_[instance].world_from_object;
     }
 
-    [[nodiscard]] bool mirrors(std::uint32_t instance) const { return instances_[instance].mirrored; }
     // Whether a ray meets the side that is counter-clockwise in object space.
     [[nodiscard]] bool meets_front(std::uint32_t instance, const Intersection& at, const Ray& ray) const;
 

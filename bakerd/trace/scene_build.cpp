@@ -81,6 +81,7 @@ void Scene::add_instance(std::uint32_t object, const MeshBvh& bvh) {
 void Scene::add_in_world_space(std::uint32_t object, const Region& region, float reach_m) {
     const map::Object& placed = map_->objects[object];
     const glm::dmat4x3 world_from_object(placed.world_from_object);
+    const bool mirrored = is_mirroring(placed.world_from_object);
     const auto within_reach = [&](const map::Primitive& primitive, const glm::uvec3& triangle) {
         map::Bounds bounds;
         for (glm::length_t k = 0; k < 3; ++k)
@@ -89,6 +90,7 @@ void Scene::add_in_world_space(std::uint32_t object, const Region& region, float
     };
     for (auto& set : triangle_sets(*map_, map_->meshes[placed.mesh], within_reach)) {
         set->instance = static_cast<std::uint32_t>(instances_.size());
+        set->mirrored = mirrored;
         attach(device_->handle(),
                handle_,
                *set,
@@ -96,8 +98,7 @@ void Scene::add_in_world_space(std::uint32_t object, const Region& region, float
                placed.world_from_object);
         world_sets_.push_back(std::move(set));
     }
-    instances_.push_back(
-        {placed.world_from_object, nullptr, object, placed.role, is_mirroring(placed.world_from_object)});
+    instances_.push_back({placed.world_from_object, nullptr, object, placed.role, mirrored});
 }
 
 Scene::~Scene() {

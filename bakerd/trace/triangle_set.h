@@ -27,6 +27,7 @@ struct TriangleSet {
     std::uint32_t primitive_index = 0;    // in its mesh
     bool mixed = false;                   // there in parts: alpha is looked at, hit by hit
     std::uint32_t instance = UINT32_MAX;  // in its scene; of a set in world space alone
+    bool mirrored = false;                // in world space the front is clockwise
     float spread = 1;                     // of its instances, at most (InstanceShape)
     // Of its triangles, in the space of Embree's scene; once attached.
     float longest_edge = 0, farthest_coordinate = 0;

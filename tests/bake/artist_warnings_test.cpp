@@ -18,8 +18,8 @@ std::vector<std::string> warnings_of(const GltfBuilder& b) {
 }
 
 std::size_t count_of(const std::vector<std::string>& warnings, const std::string& text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(warnings, [&](const std::string& w) { return w.find(text) != std::string::npos; }));
+    return static_cast<std::size_t>(std::ranges::count_if(
+        warnings, [&](const std::string& w) { return w.find(text) != std::string::npos; }));
 }
 
 int place_named(GltfBuilder& b, const Shape& shape, const std::string& name, bool double_sided = false) {
@@ -40,8 +40,7 @@ Shape turned(Shape shape) {
 
 TEST(ClosedSky, DomeOrLidIsNamed) {
     // From below the ground to high above, and a flat lid.
-    for (const Shape& sky : {turned(box({-200, -20, -264}, {264, 200, 200})),
-                             turned(ground(5000, 40))}) {
+    for (const Shape& sky : {turned(box({-200, -20, -264}, {264, 200, 200})), turned(ground(5000, 40))}) {
         GltfBuilder b;
         place_named(b, floor_of_sector(), "ground");
         place_named(b, sky, "sky dome");
@@ -61,7 +60,8 @@ TEST(ClosedSky, RoomsAndOpenGroundNeedNoWord) {
     EXPECT_EQ(count_of(warnings_of(open), "sky"), 0u);
 }
 
-void add_lamp(GltfBuilder& b, const glm::dvec3& at, const Json& light = {{"type", "point"}, {"intensity", 100}}) {
+void add_lamp(GltfBuilder& b, const glm::dvec3& at,
+              const Json& light = {{"type", "point"}, {"intensity", 100}}) {
     b.add_node({.light = b.add_light(light), .translation = at, .name = "lantern"});
 }
 
@@ -108,7 +108,9 @@ TEST(EnclosedLamp, SpotIsJudgedByItsCone) {
         Shape housing = box({31.9f, 2.9f, -32.1f}, {32.1f, 3.1f, -31.9f});
         std::vector<std::uint32_t> sides;
         for (std::size_t t = 0; t < housing.indices.size(); t += 3) {
-            const auto north = [&](std::size_t k) { return housing.positions[housing.indices[t + k]].z < -32; };
+            const auto north = [&](std::size_t k) {
+                return housing.positions[housing.indices[t + k]].z < -32;
+            };
             if (!open || !(north(0) && north(1) && north(2)))
                 sides.insert(sides.end(), &housing.indices[t], &housing.indices[t] + 3);
         }

@@ -22,7 +22,8 @@ double luminance(const glm::vec3& colour) {
 }
 
 int glass_material(GltfBuilder& b, const Glass& glass, bool double_sided = false) {
-    const int material = b.add_material({.colour = glm::vec4(glass.colour, glass.alpha), .double_sided = double_sided});
+    const int material =
+        b.add_material({.colour = glm::vec4(glass.colour, glass.alpha), .double_sided = double_sided});
     Json& json = b.json["materials"][static_cast<std::size_t>(material)];
     json["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = glass.factor;
     if (glass.alpha < 1)
@@ -72,8 +73,9 @@ TEST(ClearGlass, TransferTakesTheColour) {
         const auto world = open_world(b);
         const bake::ProbeLight light = light_at(*world, {5, 6, 1}, 8192, 1);
         for (std::size_t c = 0; c < channel_count; ++c) {
-            const double through = (1 - glass.alpha) + glass.alpha * glass.factor *
-                                                           static_cast<double>(glass.colour[static_cast<glm::length_t>(c)]);
+            const double through =
+                (1 - glass.alpha) +
+                glass.alpha * glass.factor * static_cast<double>(glass.colour[static_cast<glm::length_t>(c)]);
             EXPECT_NEAR(under_constant_sky(light, c, 3), floor_albedo * through, sampling) << c;
         }
     }
@@ -108,8 +110,9 @@ TEST(ClearGlass, LampBehindItShinesWithoutChance) {
             const auto world = open_world(b);
             const bake::ProbeLight light = light_at(*world, {5, 6, 1}, 64, 0);
             for (std::size_t c = 0; c < channel_count; ++c) {
-                const double once = (1 - glass.alpha) + glass.alpha * glass.factor *
-                                                            static_cast<double>(glass.colour[static_cast<glm::length_t>(c)]);
+                const double once =
+                    (1 - glass.alpha) + glass.alpha * glass.factor *
+                                            static_cast<double>(glass.colour[static_cast<glm::length_t>(c)]);
                 const double open = std::numbers::inv_pi / 16 * 0.577350;
                 EXPECT_NEAR(light.static_irradiance[c][0], open * (panes == 2 ? once * once : once), 1e-5);
             }
@@ -132,7 +135,8 @@ TEST(ClearGlass, BouncedLightOfALampTakesTheColour) {
     const bake::ProbeLight open = bounced(nullptr);
     const bake::ProbeLight behind = bounced(&glass);
     for (std::size_t c = 0; c < channel_count; ++c) {
-        const double through = glass.factor * static_cast<double>(glass.colour[static_cast<glm::length_t>(c)]);
+        const double through =
+            glass.factor * static_cast<double>(glass.colour[static_cast<glm::length_t>(c)]);
         const double expected = static_cast<double>(open.static_irradiance[c][3]) * through;
         EXPECT_NEAR(behind.static_irradiance[c][3], expected, 0.1 * expected + 1e-4);
     }
@@ -158,7 +162,8 @@ TEST(ClearGlass, LocalTransferPassesItTwice) {
     for (std::size_t p = 0; p < 2; ++p) {
         for (std::size_t q = 0; q < 2; ++q) {
             for (std::size_t c = 0; c < channel_count; ++c) {
-                const double once = glass.factor * static_cast<double>(glass.colour[static_cast<glm::length_t>(c)]);
+                const double once =
+                    glass.factor * static_cast<double>(glass.colour[static_cast<glm::length_t>(c)]);
                 const double expected = static_cast<double>(open.at(p, q)[c][0]) * once * once;
                 EXPECT_NEAR(behind.at(p, q)[c][0], expected, 0.08 * expected) << p << q << c;
             }

@@ -38,8 +38,7 @@ TEST(SpecularGlossiness, DiffuseColourAndPictureReplaceTheCores) {
     EXPECT_FALSE(worn(pane.b).base_texture.present());
     const int texture = pane.b.add_texture({.rgba = {255, 0, 0, 255}});
     pane.extension["diffuseTexture"] = {
-        {"index", texture},
-        {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0.25}}}}}}};
+        {"index", texture}, {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0.25}}}}}}};
     const Material textured = worn(pane.b);
     ASSERT_TRUE(textured.base_texture.present());
     EXPECT_EQ(textured.base_texture.u_from_uv, glm::vec3(1, 0, 0.5f));
@@ -149,7 +148,8 @@ TEST(LevelsOfDetail, CoarserOnesAreNotThere) {
             const int hull = b.place(box({-9, 0, -9}, {9, 9, 9}));
             const int coarsest = b.place(box({-20, 0, -20}, {20, 9, 20}));
             const int tower = b.place(box({-2, 0, -2}, {2, 9, 2}));
-            b.json["nodes"][static_cast<std::size_t>(tower)]["extensions"]["MSFT_lod"]["ids"] = {hull, coarsest};
+            b.json["nodes"][static_cast<std::size_t>(tower)]["extensions"]["MSFT_lod"]["ids"] = {hull,
+                                                                                                 coarsest};
             Json roots = {tower};
             if (as_child)
                 b.add_node({.children = {hull}});
@@ -196,11 +196,11 @@ TEST(Extensions, WhatIsPassedOverIsToldOnce) {
 TEST(Extensions, GlossAndWhatHasAFallbackNeedNoWord) {
     GltfBuilder b;
     b.place(ground(1));
-    b.json["extensionsUsed"] = {"KHR_materials_ior",         "KHR_materials_specular",
-                                "KHR_materials_clearcoat",   "KHR_materials_sheen",
-                                "KHR_materials_iridescence", "KHR_materials_anisotropy",
-                                "KHR_texture_basisu",        "KHR_draco_mesh_compression",
-                                "KHR_node_visibility",       "MSFT_lod",
+    b.json["extensionsUsed"] = {"KHR_materials_ior",          "KHR_materials_specular",
+                                "KHR_materials_clearcoat",    "KHR_materials_sheen",
+                                "KHR_materials_iridescence",  "KHR_materials_anisotropy",
+                                "KHR_texture_basisu",         "KHR_draco_mesh_compression",
+                                "KHR_node_visibility",        "MSFT_lod",
                                 "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness"};
     EXPECT_TRUE(import(b).warnings.empty());
 }
