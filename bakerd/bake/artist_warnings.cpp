@@ -102,18 +102,26 @@ void warn_of_closed_sky(const trace::Scene& scene,
                         const Sector& sector,
                         std::span<const placement::Position> probes,
                         std::vector<std::string>& warnings) {
-    constexpr float high_m = 10;  // above that of rooms
+    constexpr float far_m = 10;  // beyond what rooms are
     constexpr double nearly_all = 0.9;
+    constexpr std::uint32_t directions = 64;
     if (probes.empty() || !std::ranges::all_of(sector.probes, sees_hardly_any_sky))
         return;
-    std::map<std::uint32_t, std::size_t> above;  // probes, by object
+    std::size_t rays = 0;
+    std::map<std::uint32_t, std::size_t> met;  // rays, by object
     for (const placement::Position& probe : probes) {
-        const auto hit = scene.closest({placement::metres(probe), {0, 0, 1}, sector.bake.reach_m});
-        if (hit && hit->distance_m >= high_m)
-            ++above[scene.object_index(hit->instance)];
+        for (std::uint32_t n = 0; n < directions; ++n) {
+            const glm::vec3 direction = direction_of(n, directions);
+            if (direction.z < 0.25f)
+                continue;
+            ++rays;
+            const auto hit = scene.closest({placement::metres(probe), direction, sector.bake.reach_m});
+            if (hit && hit->distance_m >= far_m)
+                ++met[scene.object_index(hit->instance)];
+        }
     }
-    for (const auto& [object, count] : above) {
-        if (static_cast<double>(count) < nearly_all * static_cast<double>(probes.size()))
+    for (const auto& [object, count] : met) {
+        if (static_cast<double>(count) < nearly_all * static_cast<double>(rays))
             continue;
         warnings.push_back(
             fmt::format("no probe under {} sees the sky: a dome or lid that stands for the sky is to be "

@@ -38,6 +38,9 @@ const glm::vec3& brightest_texel(const ImportState& state, std::uint32_t texture
 void warn_of_brightness(const ImportState& state, int gltf_material, const Primitive& primitive) {
     const Material& material = state.map.materials[primitive.material];
     glm::vec3 albedo(material.base_colour);
+    // Clear glass lets it through instead; where a picture says how clear, some may not be.
+    if (!material.transmission_texture.present())
+        albedo *= 1 - material.transmission;
     if (gltf_material < 0 || !is_too_bright(albedo))
         return;  // glTF's default material is white, and nobody's choice
     if (!primitive.colours.empty())

@@ -38,6 +38,16 @@ TEST(BrightnessWarning, BeginsAboveTheLimit) {
     EXPECT_EQ(warnings_of(ground(1), snow(1)).size(), 1u);
 }
 
+TEST(BrightnessWarning, SparesClearGlass) {
+    GltfBuilder b;
+    b.place(ground(1), "", b.add_material(snow(1)));
+    auto& extension = b.json["materials"][0]["extensions"]["KHR_materials_transmission"];
+    extension["transmissionFactor"] = 0.5;
+    EXPECT_TRUE(warnings_of(b).empty());
+    extension["transmissionFactor"] = 0.01;
+    EXPECT_EQ(warnings_of(b).size(), 1u);
+}
+
 TEST(BrightnessWarning, SparesTheDefaultMaterial) {
     GltfBuilder b;
     b.place(ground(1));

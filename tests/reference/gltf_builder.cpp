@@ -189,6 +189,10 @@ int GltfBuilder::add_material(const Surfacing& surfacing) {
     }
     if (surfacing.emission_texture >= 0)
         material["emissiveTexture"] = {{"index", surfacing.emission_texture}};
+    if (surfacing.clear > 0) {
+        material["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", surfacing.clear}};
+        use_extension("KHR_materials_transmission");
+    }
     if (surfacing.transmission > 0) {
         const glm::vec3& through = surfacing.transmission_colour;
         material["extensions"]["KHR_materials_diffuse_transmission"] = {

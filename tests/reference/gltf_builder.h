@@ -45,6 +45,7 @@ struct Surfacing {
     int emission_texture = -1;
     double transmission = 0;
     glm::vec3 transmission_colour{1};
+    double clear = 0;  // KHR_materials_transmission
 };
 
 // KHR_lights_punctual. `range_m` 0 is none.

@@ -56,21 +56,24 @@ class Integrator {
     void add_direct_light(double weight, Batch& batch) {
         for (const map::Light* light : lights_) {
             const auto incident = incidence(*light, walk_.probe);
-            if (!incident || !walk_.lit(walk_.probe, *incident))
+            if (!incident)
                 continue;
+            const glm::dvec3 light_seen = incident->irradiance * walk_.lit(walk_.probe, *incident);
             for (std::size_t b = 0; b < basis_count; ++b) {
                 const double share = weight * std::max(0.0, glm::dot(incident->towards, basis[b])) / pi;
                 for (std::size_t c = 0; c < channel_count; ++c)
-                    batch.irradiance[c][b] += share * incident->irradiance[static_cast<glm::length_t>(c)];
+                    batch.irradiance[c][b] += share * light_seen[static_cast<glm::length_t>(c)];
             }
         }
     }
 
     void add_first_ray(const glm::dvec3& w, double weight, Batch& batch) {
-        const auto hit = walk_.closest(walk_.probe, w);
+        glm::dvec3 tint(1);
+        const auto hit = walk_.closest(walk_.probe, w, tint);
         if (!hit) {
+            const double seen = glm::dot(tint, {0.2126, 0.7152, 0.0722});
             for (std::size_t b = 0; b < basis_count && w.z > 0; ++b)
-                batch.visibility[b] += weight * 4 * pi * std::max(0.0, glm::dot(w, basis[b]));
+                batch.visibility[b] += seen * weight * 4 * pi * std::max(0.0, glm::dot(w, basis[b]));
             return;
         }
         Radiance radiance;
@@ -79,7 +82,7 @@ class Integrator {
             for (std::uint32_t column = 0; column < options_.continuation_strata; ++column) {
                 const double u = (row + walk_.random.next()) / side,
                              v = (column + walk_.random.next()) / side;
-                follow(*hit, w, u, v, 1 / (side * side), radiance);
+                follow(*hit, w, u, v, tint / (side * side), radiance);
             }
         }
         for (std::size_t b = 0; b < basis_count; ++b) {
@@ -95,7 +98,8 @@ class Integrator {
 
     // One sample of what the surface that `arriving` hit sends back along it, times `weight`. The first
     // direction onward is made of `u` and `v`.
-    void follow(SurfaceHit hit, glm::dvec3 arriving, double u, double v, double weight, Radiance& radiance) {
+    void follow(SurfaceHit hit, glm::dvec3 arriving, double u, double v, const glm::dvec3& weight,
+                Radiance& radiance) {
         glm::dvec3 throughput(weight), origin = walk_.probe;
         for (std::uint32_t scattering = 1;; ++scattering) {
             if (hit.absorbs)
@@ -110,7 +114,7 @@ class Integrator {
             }
             const Walk::Step step = Walk::onward(hit, point, u, v);
             throughput *= step.weight;
-            const auto next = walk_.closest(step.origin, step.direction);
+            const auto next = walk_.closest(step.origin, step.direction, throughput);
             if (!next) {
                 if (step.direction.z > 0)
                     add_sky(step.direction, throughput, radiance);  // below the horizon it is black

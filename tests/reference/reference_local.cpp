@@ -18,7 +18,7 @@ void follow(Walk& walk, const glm::dvec3& w, std::span<const glm::dvec3> sources
             std::vector<glm::dvec3>& radiance) {
     glm::dvec3 origin = walk.probe, arriving = w, throughput(1);
     for (std::uint32_t scattering = 1; scattering <= bounces; ++scattering) {
-        const auto hit = walk.closest(origin, arriving);
+        const auto hit = walk.closest(origin, arriving, throughput);
         if (!hit || hit->absorbs)
             return;
         const glm::dvec3 point = origin + hit->distance_m * arriving;

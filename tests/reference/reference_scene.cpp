@@ -55,7 +55,6 @@ Scene::Scene(const map::Map& map, const Region& region) : map_(map) {
 }
 
 void Scene::add_object(const map::Object& object, const Region& region) {
-    const std::size_t first = triangles_.size();
     const glm::dmat4x3 world_from_object(object.world_from_object);
     // A mirroring turns the winding over; the object space tells the front all the same.
     const bool mirrored = glm::determinant(glm::dmat3(world_from_object)) < 0;
@@ -77,43 +76,29 @@ void Scene::add_object(const map::Object& object, const Region& region) {
             if (apart(glm::min(corner[0], glm::min(corner[1], corner[2])),
                       glm::max(corner[0], glm::max(corner[1], corner[2])), region))
                 continue;
-            const Triangle triangle{corner[0], corner[1] - corner[0],         corner[2] - corner[0],
-                                    worn,      static_cast<std::uint32_t>(n), false};
+            const Triangle triangle{corner[0], corner[1] - corner[0], corner[2] - corner[0], worn,
+                                    static_cast<std::uint32_t>(n)};
             if (glm::length(glm::cross(triangle.edge1, triangle.edge2)) > 0)
                 triangles_.push_back(triangle);
         }
     }
-    mark_twins(first);
 }
 
-// Among the triangles from `first` on.
-void Scene::mark_twins(std::size_t first) {
-    using Corner = std::array<double, 3>;
-    std::map<std::array<Corner, 3>, std::vector<std::size_t>> by_corners;
-    for (std::size_t n = first; n < triangles_.size(); ++n) {
-        const Triangle& t = triangles_[n];
-        std::array<Corner, 3> corners;
-        std::size_t k = 0;
-        for (const glm::dvec3& edge : {glm::dvec3(0), t.edge1, t.edge2}) {
-            // Rounded, because corner + edge is.
-            const glm::dvec3 corner = glm::round((t.corner + edge) * 1e6);
-            corners[k++] = {corner.x, corner.y, corner.z};
-        }
-        std::sort(corners.begin(), corners.end());
-        by_corners[corners].push_back(n);
-    }
-    for (const auto& [corners, numbers] : by_corners) {
-        for (const std::size_t a : numbers) {
-            for (const std::size_t b : numbers) {
-                const auto front = [&](std::size_t n) {
-                    return glm::cross(triangles_[n].edge1, triangles_[n].edge2);
-                };
-                if (glm::dot(front(a), front(b)) < 0)
-                    triangles_[a].twin = true;
-            }
-        }
-    }
+namespace {
+
+// Over a surface: far over double's rounding at 100 km, far under anything modelled.
+constexpr double step_m = 1e-7;
+
+double luminance(const glm::dvec3& colour) {
+    return glm::dot(colour, {0.2126, 0.7152, 0.0722});
 }
+
+// IEC 61966-2-1: what an sRGB picture holds for a linear value.
+double encoded(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+}  // namespace
 
 // Moller and Trumbore, "Fast, Minimum Storage Ray-Triangle Intersection", 1997.
 std::optional<Scene::Crossing> Scene::cross(const Triangle& t, const glm::dvec3& origin,
@@ -174,14 +159,13 @@ bool Scene::is_there(const Triangle& triangle, const Crossing& at, Random& rando
 SurfaceHit Scene::surface(const Triangle& triangle, const Crossing& at, const glm::dvec3& direction) const {
     const Worn& worn = worn_[triangle.worn];
     const map::Material& material = *worn.material;
-    const glm::dvec3 front =
-        glm::normalize(glm::cross(triangle.edge1, triangle.edge2)) * (worn.mirrored ? -1.0 : 1.0);
+    const glm::dvec3 front = front_normal(triangle);
     const bool on_front = glm::dot(front, direction) < 0;
     SurfaceHit hit;
     hit.distance_m = at.distance_m;
     hit.normal = on_front ? front : -front;
-    if (!on_front && !triangle.twin && !material.double_sided && !worn.vegetation &&
-        !(material.diffuse_transmission > 0)) {
+    if (!on_front && !material.double_sided && !worn.vegetation && !(material.diffuse_transmission > 0) &&
+        !(material.transmission > 0)) {
         hit.absorbs = true;
         return hit;
     }
@@ -194,6 +178,10 @@ SurfaceHit Scene::surface(const Triangle& triangle, const Crossing& at, const gl
     } else if (worn.vegetation && (material.double_sided || material.alpha_mode != map::AlphaMode::opaque)) {
         hit.transmitted = base * leaf_transmission;
     }
+    hit.clear = clear_share(triangle, at);
+    const double scattering = 1 - transmission(triangle, at);
+    hit.reflected *= scattering;
+    hit.transmitted *= scattering;
     const glm::dvec3 excess = glm::max(glm::dvec3(1), (hit.reflected + hit.transmitted) / albedo_limit);
     hit.reflected /= excess;
     hit.transmitted /= excess;
@@ -206,38 +194,107 @@ SurfaceHit Scene::surface(const Triangle& triangle, const Crossing& at, const gl
     return hit;
 }
 
-std::optional<SurfaceHit> Scene::closest(const glm::dvec3& origin, const glm::dvec3& direction,
-                                         Random& random) const {
-    double far = std::numeric_limits<double>::infinity();
-    Crossing best{};
-    const Triangle* found = nullptr;
+glm::dvec3 Scene::front_normal(const Triangle& triangle) const {
+    return glm::normalize(glm::cross(triangle.edge1, triangle.edge2)) *
+           (worn_[triangle.worn].mirrored ? -1.0 : 1.0);
+}
+
+double Scene::transmission(const Triangle& triangle, const Crossing& at) const {
+    const Worn& worn = worn_[triangle.worn];
+    double share = static_cast<double>(worn.material->transmission);
+    // The picture's numbers are no colours: its red as the file has it.
+    if (share > 0 && worn.material->transmission_texture.present())
+        share *= encoded(
+            picture(worn.material->transmission_texture, worn.primitive->transmission_uvs, triangle, at).x);
+    return share;
+}
+
+glm::dvec3 Scene::clear_share(const Triangle& triangle, const Crossing& at) const {
+    return glm::clamp(glm::dvec3(colour(triangle, at)), 0.0, 1.0) * transmission(triangle, at);
+}
+
+Scene::Met Scene::nearest(const glm::dvec3& origin, const glm::dvec3& direction, double far_m,
+                          Random& random) const {
+    Met met;
+    double far = far_m;
     bvh_->walk(origin, direction, far, [&](std::uint32_t first, std::uint32_t count) {
         for (std::uint32_t n = first; n < first + count; ++n) {
             const auto crossing = cross(triangles_[n], origin, direction, far);
             if (!crossing || !is_there(triangles_[n], *crossing, random))
                 continue;
-            best = *crossing;
-            far = best.distance_m;
-            found = &triangles_[n];
+            met = {&triangles_[n], *crossing};
+            far = crossing->distance_m;
         }
         return true;
     });
-    if (found == nullptr)
-        return std::nullopt;
-    return surface(*found, best, direction);
+    return met;
 }
 
-bool Scene::blocked(const glm::dvec3& origin, const glm::dvec3& direction, double far_m,
-                    Random& random) const {
-    bool found = false;
-    bvh_->walk(origin, direction, far_m, [&](std::uint32_t first, std::uint32_t count) {
-        for (std::uint32_t n = first; n < first + count && !found; ++n) {
-            const auto crossing = cross(triangles_[n], origin, direction, far_m);
-            found = crossing && is_there(triangles_[n], *crossing, random);
+Scene::Met Scene::front_of(const Met& met, const glm::dvec3& origin, const glm::dvec3& direction,
+                           Random& random) const {
+    const glm::dvec3 normal = front_normal(*met.triangle);
+    const double cosine = glm::dot(normal, direction);
+    if (!(cosine > 0))
+        return met;  // is one
+    // What float matrices make of two walls in one plane.
+    const glm::dvec3 point = glm::abs(origin + direction * met.at.distance_m);
+    const double plane_m = 1e-6 * (1 + std::max({point.x, point.y, point.z}));
+    Met found = met;
+    double far = met.at.distance_m + plane_m / cosine;
+    bvh_->walk(origin, direction, far, [&](std::uint32_t first, std::uint32_t count) {
+        for (std::uint32_t n = first; n < first + count; ++n) {
+            const glm::dvec3 other = front_normal(triangles_[n]);
+            const auto crossing = cross(triangles_[n], origin, direction, far);
+            if (glm::dot(other, normal) < -0.9999 && crossing && is_there(triangles_[n], *crossing, random))
+                found = {&triangles_[n], *crossing};
         }
-        return !found;
+        return true;
     });
     return found;
+}
+
+std::optional<SurfaceHit> Scene::closest(const glm::dvec3& origin, const glm::dvec3& direction,
+                                         Random& random, glm::dvec3& tint) const {
+    double gone_m = 0;
+    for (;;) {
+        const glm::dvec3 start = origin + direction * gone_m;
+        Met met = nearest(start, direction, std::numeric_limits<double>::infinity(), random);
+        if (met.triangle == nullptr)
+            return std::nullopt;
+        met = front_of(met, start, direction, random);
+        SurfaceHit hit = surface(*met.triangle, met.at, direction);
+        hit.distance_m += gone_m;
+        const double passes = luminance(hit.clear);
+        if (!(passes > 0 && random.next() < passes)) {
+            hit.reflected /= 1 - passes;
+            hit.transmitted /= 1 - passes;
+            // A pane glows as far as it is not clear in its brightest channel, as a blended one by its alpha.
+            const double most = std::max({hit.clear.x, hit.clear.y, hit.clear.z});
+            hit.emitted *= (1 - most) / (1 - passes);
+            return hit;
+        }
+        tint *= hit.clear / passes;
+        gone_m = hit.distance_m + step_m;
+    }
+}
+
+glm::dvec3 Scene::arriving(const glm::dvec3& origin, const glm::dvec3& direction, double far_m,
+                           Random& random) const {
+    const glm::dvec3 end = origin + direction * far_m;
+    const double plane_m = 1e-6 * (1 + std::max({std::abs(end.x), std::abs(end.y), std::abs(end.z)}));
+    glm::dvec3 share(1);
+    for (double gone_m = 0;;) {
+        const Met met = nearest(origin + direction * gone_m, direction, far_m - gone_m, random);
+        if (met.triangle == nullptr)
+            return share;
+        const bool at_end =
+            std::abs(glm::dot(front_normal(*met.triangle), end - met.triangle->corner)) < plane_m;
+        if (!at_end)
+            share *= clear_share(*met.triangle, met.at);
+        if (share == glm::dvec3(0))
+            return share;
+        gone_m += met.at.distance_m + step_m;
+    }
 }
 
 }  // namespace drtv::reference

@@ -26,6 +26,7 @@ struct SurfaceHit {
     glm::dvec3 reflected{};    // share of the light from the ray's side that goes back to it; linear Rec. 709
     glm::dvec3 transmitted{};  // share that goes through; both together at most 0.95
     glm::dvec3 emitted{};      // radiance towards the ray's side, W/(sr m2)
+    glm::dvec3 clear{};        // share that goes straight through
     bool absorbs = false;      // the back of a one-sided surface: all three are 0
 };
 
@@ -40,13 +41,16 @@ class Scene {
     explicit Scene(const map::Map& map, const Region& region = {});
 
     // The closest hit along the unit `direction`, or nothing. Masked texels let the ray through, blended ones
-    // do so with the probability that their alpha lacks of 1, drawn anew at each crossing.
+    // do so with the probability that their alpha lacks of 1, drawn anew at each crossing; clear glass with
+    // the luminance of what goes straight through, whose colour `tint` is multiplied with. Of two surfaces in
+    // one plane the one that turns its front to the ray is hit.
     [[nodiscard]] std::optional<SurfaceHit> closest(const glm::dvec3& origin, const glm::dvec3& direction,
-                                                    Random& random) const;
+                                                    Random& random, glm::dvec3& tint) const;
 
-    // Whether anything lies nearer than `far_m`.
-    [[nodiscard]] bool blocked(const glm::dvec3& origin, const glm::dvec3& direction, double far_m,
-                               Random& random) const;
+    // The share of light that comes from the point `far_m` along the ray; a surface in whose plane that point
+    // lies takes none of it.
+    [[nodiscard]] glm::dvec3 arriving(const glm::dvec3& origin, const glm::dvec3& direction, double far_m,
+                                      Random& random) const;
 
     [[nodiscard]] const std::vector<map::Light>& lights() const { return map_.lights; }
     [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
@@ -56,8 +60,6 @@ class Scene {
         glm::dvec3 corner, edge1, edge2;
         std::uint32_t worn = 0;    // index into worn_
         std::uint32_t number = 0;  // of the primitive's triangles
-        bool twin =
-            false;  // another of the object has its corners and looks the other way: together two fronts
     };
     // A primitive of an object.
     struct Worn {
@@ -70,7 +72,6 @@ class Scene {
     };
 
     void add_object(const map::Object& object, const Region& region);
-    void mark_twins(std::size_t first);
     [[nodiscard]] static std::optional<Crossing> cross(const Triangle& triangle, const glm::dvec3& origin,
                                                        const glm::dvec3& direction, double far_m);
     // Base colour (w is alpha) before clamping.
@@ -78,6 +79,19 @@ class Scene {
     [[nodiscard]] glm::dvec4 picture(const map::TextureView& view, const std::vector<glm::vec2>& uvs,
                                      const Triangle& triangle, const Crossing& at) const;
     [[nodiscard]] bool is_there(const Triangle& triangle, const Crossing& at, Random& random) const;
+    struct Met {
+        const Triangle* triangle = nullptr;
+        Crossing at{};
+    };
+    // The nearest below `far_m` that is there, glass or not.
+    [[nodiscard]] Met nearest(const glm::dvec3& origin, const glm::dvec3& direction, double far_m,
+                              Random& random) const;
+    // The front in the plane of a back, or the back.
+    [[nodiscard]] Met front_of(const Met& met, const glm::dvec3& origin, const glm::dvec3& direction,
+                               Random& random) const;
+    [[nodiscard]] glm::dvec3 front_normal(const Triangle& triangle) const;
+    [[nodiscard]] double transmission(const Triangle& triangle, const Crossing& at) const;
+    [[nodiscard]] glm::dvec3 clear_share(const Triangle& triangle, const Crossing& at) const;
     [[nodiscard]] SurfaceHit surface(const Triangle& triangle, const Crossing& at,
                                      const glm::dvec3& direction) const;
 

@@ -20,8 +20,9 @@ glm::dvec3 sphere_direction(double u, double v) {
     return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-std::optional<SurfaceHit> Walk::closest(const glm::dvec3& origin, const glm::dvec3& direction) {
-    auto hit = scene.closest(origin, direction, random);
+std::optional<SurfaceHit> Walk::closest(const glm::dvec3& origin, const glm::dvec3& direction,
+                                        glm::dvec3& tint) {
+    auto hit = scene.closest(origin, direction, random, tint);
     if (hit && glm::length(origin + hit->distance_m * direction - probe) > reach_m)
         hit.reset();
     return hit;
@@ -31,15 +32,14 @@ bool Walk::within_reach(const glm::dvec3& position) const {
     return glm::length(position - probe) <= reach_m;
 }
 
-bool Walk::lit(const glm::dvec3& point, const Incidence& light) {
+glm::dvec3 Walk::lit(const glm::dvec3& point, const Incidence& light) {
     // Where the way to a directional light leaves the sphere of reach; `point` lies in it.
     const glm::dvec3 from_probe = point - probe;
     const double middle = glm::dot(from_probe, light.towards);
     const double leaves =
         -middle +
         std::sqrt(std::max(0.0, middle * middle + reach_m * reach_m - glm::dot(from_probe, from_probe)));
-    return !scene.blocked(point, light.towards, std::min(leaves, light.distance_m - surface_offset_m),
-                          random);
+    return scene.arriving(point, light.towards, std::min(leaves, light.distance_m), random);
 }
 
 glm::dvec3 Walk::scattered(const SurfaceHit& hit, const glm::dvec3& point, const Incidence& light) {
@@ -47,9 +47,8 @@ glm::dvec3 Walk::scattered(const SurfaceHit& hit, const glm::dvec3& point, const
     const glm::dvec3& share = cosine > 0 ? hit.reflected : hit.transmitted;
     if (cosine == 0 || share == glm::dvec3(0))
         return glm::dvec3(0);
-    if (!lit(point + std::copysign(surface_offset_m, cosine) * hit.normal, light))
-        return glm::dvec3(0);
-    return share / pi * std::abs(cosine) * light.irradiance;
+    const glm::dvec3 seen = lit(point + std::copysign(surface_offset_m, cosine) * hit.normal, light);
+    return share / pi * std::abs(cosine) * light.irradiance * seen;
 }
 
 Walk::Step Walk::onward(const SurfaceHit& hit, const glm::dvec3& point, double u, double v) {

@@ -25,10 +25,12 @@ struct Walk {
     Random random;
 
     // A hit outside the sphere of reach is none; beyond it there is nothing to come back from.
-    [[nodiscard]] std::optional<SurfaceHit> closest(const glm::dvec3& origin, const glm::dvec3& direction);
+    // `tint` is multiplied with the colour of glass on the way.
+    [[nodiscard]] std::optional<SurfaceHit> closest(const glm::dvec3& origin, const glm::dvec3& direction,
+                                                    glm::dvec3& tint);
 
-    // Whether the light reaches the point (once; blended surfaces draw).
-    [[nodiscard]] bool lit(const glm::dvec3& point, const Incidence& light);
+    // The share of the light that reaches the point (once; blended surfaces draw).
+    [[nodiscard]] glm::dvec3 lit(const glm::dvec3& point, const Incidence& light);
 
     // Whether a light at `position` counts for this probe.
     [[nodiscard]] bool within_reach(const glm::dvec3& position) const;
