@@ -183,6 +183,21 @@ TEST(ShadeLocal, IsIntensityTimesTheSumOverTheHarmonics) {
     EXPECT_NEAR(north[2], 5 * 4 * 0.488603, 2e-4);
 }
 
+// Of light that all comes from above: 0.2821 R0 at the side, as much below 0 at the opposite normal.
+TEST(ShadeLocal, TwoBandsGoBelowZeroAndStayLinear) {
+    const auto code = [](double value) { return static_cast<std::int16_t>(value * 16384); };
+    const LightCodes from_above = {{{code(1), 0, code(1.1547), 0}, {}, {}}};
+    const LightCodes from_below = {{{code(1), 0, code(-1.1547), 0}, {}, {}}};
+    const LightCodes from_both = {{{code(1), 0, 0, 0}, {}, {}}};
+    const auto red = [](const LightCodes& pair, const Float3& normal) {
+        return shade_local(pair, 2, {1, 1, 1}, normal)[0];
+    };
+    EXPECT_NEAR(red(from_above, {0, 0, 1}), 3 * 0.282095, 1e-3);
+    EXPECT_NEAR(red(from_above, {0, 0, -1}), -0.282095, 1e-3);
+    for (const Float3& normal : {Float3{0, 0, 1}, {0, 0, -1}, {0.6f, 0, 0.8f}})
+        EXPECT_NEAR(red(from_above, normal) + red(from_below, normal), 2 * red(from_both, normal), 1e-3);
+}
+
 TEST(ShadeAmbient, AgreesWithTheTalksCodeInDouble) {
     RandomLight random;
     for (int n = 0; n < 1000; ++n) {

@@ -32,8 +32,10 @@ using BasisColours = std::array<Float3, basis_count>;
 void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light);
 
 // What a light at a local source adds to the ambient light at a unit normal, by bounce: its direct light is
-// the game's. `pair` and `scale` are what find_local_pair gives, `intensity` is the light's in W/sr. Noise
-// can make it a little less than 0.
+// the game's. `pair` and `scale` are what find_local_pair gives, `intensity` is the light's in W/sr.
+// Two bands cannot follow a cosine lobe: where all light comes from one side, they say less than 0 on the
+// other, down to as much as band 0 alone gives. It stays so, because it is linear: over several lights, and
+// with the ambient light, what is missing here makes up for what is too much there. Clamp the sum at the end.
 [[nodiscard]] Float3 shade_local(const LightCodes& pair,
                                  float scale,
                                  const Float3& intensity,
