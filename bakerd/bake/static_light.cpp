@@ -101,7 +101,7 @@ void StaticLight::add_direct() {
         if (incident.light == glm::vec3(0))
             return;
         const trace::Ray ray = shadow_ray(task_.probe, incident, weights, light);
-        const glm::vec3 seen = task_.scene.share_seen(ray);
+        const glm::vec3 seen = task_.scene.share_seen(ray, incident.target.has_value());
         if (seen != glm::vec3(0))
             sums_.add_direct(weights, light * seen);
     };
@@ -145,7 +145,7 @@ glm::vec3 StaticLight::share_seen(const glm::vec3& start,
     const bool hidden = incident.target ? task_.scene.hides_surface(ray) : task_.scene.occluded(ray);
     if (hidden)
         return glm::vec3(0);
-    return task_.scene.has_glass() ? task_.scene.passed(ray).tint : glm::vec3(1);
+    return task_.scene.has_glass() ? task_.scene.passed(ray, incident.target.has_value()).tint : glm::vec3(1);
 }
 
 trace::Ray StaticLight::shadow_ray(const glm::vec3& start,

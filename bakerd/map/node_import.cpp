@@ -38,13 +38,16 @@ bool is_finite(const glm::dmat4& m) {
 // them.
 std::vector<bool> coarser_levels(const tinygltf::Model& model) {
     std::vector<bool> coarser(model.nodes.size(), false);
-    for (const tinygltf::Node& node : model.nodes) {
-        const auto levels = node.extensions.find("MSFT_lod");
-        if (levels == node.extensions.end())
+    for (std::size_t finest = 0; finest < coarser.size(); ++finest) {
+        const auto levels = model.nodes[finest].extensions.find("MSFT_lod");
+        if (levels == model.nodes[finest].extensions.end())
             continue;
         const tinygltf::Value& ids = levels->second.Get("ids");
-        for (int n = 0; n < static_cast<int>(ids.ArrayLen()); ++n)
-            coarser[static_cast<std::size_t>(ids.Get(n).GetNumberAsInt())] = true;
+        for (int n = 0; n < static_cast<int>(ids.ArrayLen()); ++n) {
+            const auto level = static_cast<std::size_t>(ids.Get(n).GetNumberAsInt());
+            if (level != finest)
+                coarser[level] = true;
+        }
     }
     return coarser;
 }

@@ -82,21 +82,28 @@ bool is_there(const Candidate& hit) {
     return !hit.set->mixed || trace::is_there(point_of(*hit.set, hit.id.triangle, *hit.at));
 }
 
-bool is_wanted(const Candidate& hit, Collected wanted) {
+// By the material alone, before the hit is looked at.
+bool may_be_wanted(const TriangleSet& set, Collected wanted) {
     switch (wanted) {
         case Collected::there:
-            return is_there(hit);
-        case Collected::not_there:
-            return is_partly_there(*hit.set->material) && !is_there(hit);
+            return true;
+        case Collected::through_glass:
+            return set.material->transmission > 0;
         case Collected::partly_there:
-            return is_partly_there(*hit.set->material);
+            return is_decided_by_chance(set);
     }
     return false;
 }
 
+bool is_wanted(const Candidate& hit, Collected wanted) {
+    if (wanted == Collected::partly_there)
+        return true;
+    return is_there(hit) == (wanted == Collected::there);
+}
+
 // Whether it hides what lies behind.
 bool is_in_the_way(const Candidate& hit, const Query& query) {
-    return query.by_chance || !is_partly_there(*hit.set->material) ? is_there(hit) : false;
+    return query.by_chance || !is_decided_by_chance(*hit.set) ? is_there(hit) : false;
 }
 
 // Of two at the same distance the one of the smaller id is nearer.
@@ -112,6 +119,8 @@ void accept(const RTCFilterFunctionNArguments& args, const Ray& ray, const Candi
 
 // The triangle's intersection for who asked for all of them.
 void collect(const Candidate& found, const Query& query, const Ray& ray) {
+    if (!may_be_wanted(*found.set, query.collected))
+        return;
     Candidate hit = found;
     resolve(hit, query, ray);
     if (hit.at && hit.at->distance_m <= double{ray.far_m} && is_wanted(hit, query.collected))
@@ -191,7 +200,7 @@ bool holds_end(const Ray& ray, const TriangleSet& set, const Crossing& crossing,
 }
 
 void occluded_filter(const RTCFilterFunctionNArguments* args) {
-    const auto& query = *reinterpret_cast<const Query*>(args->context);
+    auto& query = *reinterpret_cast<Query*>(args->context);
     const auto& set = *static_cast<const TriangleSet*>(args->geometryUserPtr);
     for (unsigned n = 0; n < args->N; ++n) {
         if (args->valid[n] != -1)
@@ -208,8 +217,10 @@ void occluded_filter(const RTCFilterFunctionNArguments* args) {
         }
         Candidate hit{id, &set, 0, 0, true, {}};
         resolve(hit, query, ray);
-        const bool hides = hit.at && hit.most_m <= ray.far_m && is_in_the_way(hit, query) &&
-                           !(query.to_surface && holds_end(ray, *hit.set, {hit.id, *hit.at}, query.scene));
+        // By rounding it may be met beyond the end.
+        const bool ends_here = query.to_surface && hit.at && holds_end(ray, set, {id, *hit.at}, query.scene);
+        query.ends_on_back = query.ends_on_back || (ends_here && !hit.front);
+        const bool hides = !ends_here && hit.at && hit.most_m <= ray.far_m && is_in_the_way(hit, query);
         if (!hides)
             args->valid[n] = 0;
     }

@@ -124,9 +124,9 @@ struct Closest {
 };
 
 enum class Collected : std::uint8_t {
-    there,        // what is there (is_there)
-    not_there,    // what is partly there, and lets the ray through
-    partly_there  // what may let the ray through, whether it does or not
+    there,          // what is there (is_there)
+    through_glass,  // clear glass that is not there
+    partly_there    // what chance decides of, whether it is there or not
 };
 
 // REQUIRES: `base` stays the first member, Embree hands back a pointer to it.
@@ -139,8 +139,10 @@ struct Query {
     // Collect hits instead of looking for the closest.
     std::vector<Crossing>* crossings = nullptr;
     Collected collected = Collected::there;
-    bool by_chance = true;    // occlusion: what is partly there hides by a coin; else not at all
-    bool to_surface = false;  // occlusion: rays end on surfaces, which do not hide that end
+    bool by_chance = true;  // occlusion: what is partly there hides by a coin; else not at all
+    // Occlusion: rays end on surfaces, which do not hide that end.
+    bool to_surface = false;
+    bool ends_on_back = false;  // said of one that ends on a back
 
     Query(const Scene& asked, std::span<const Ray> asked_rays) : scene(asked), rays(asked_rays) {
         rtcInitIntersectContext(&base);

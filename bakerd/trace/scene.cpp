@@ -19,6 +19,10 @@ Intersection intersection_of(const Candidate& hit, const Scene& scene, const Ray
                         ray, scene.world_from_object(hit.id.instance), corners_of(*hit.set, hit.id.triangle));
 }
 
+float order_of(const Candidate& hit, const Intersection& at) {
+    return hit.at ? hit.most_m : static_cast<float>(at.distance_m);
+}
+
 }  // namespace
 
 const TriangleSet& Scene::set_of(std::uint32_t instance, std::uint32_t embree_geometry) const {
@@ -42,10 +46,35 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
     const Intersection at = intersection_of(closest.hit, *this, ray);
     if (!closest.hit.front && closest.front) {
         const Intersection of_front = intersection_of(*closest.front, *this, ray);
-        if (in_one_plane(ray, at, of_front))
+        // Within the slack both are known, in whichever order they were found.
+        const float back_m = order_of(closest.hit, at);
+        if (order_of(*closest.front, of_front) <= back_m + plane_slack(ray, back_m) &&
+            in_one_plane(ray, at, of_front))
             return hit_at(*closest.front, of_front, ray);
     }
+    if (!closest.hit.front && is_decided_by_chance(*closest.hit.set)) {
+        if (const std::optional<Hit> skin = front_skin(closest.hit, at, ray))
+            return skin;
+    }
     return hit_at(closest.hit, at, ray);
+}
+
+// Of a thing of two skins that chance decides of, the coin has fallen for the back. It is one thing: its
+// front is met wherever that is, there or not.
+std::optional<Hit> Scene::front_skin(const Candidate& back, const Intersection& at, const Ray& ray) const {
+    if (is_two_sided(*back.set->material, instances_[back.id.instance].role))
+        return std::nullopt;
+    const float back_m = static_cast<float>(at.distance_m);
+    const Ray longer{ray.origin, ray.direction, back_m + plane_slack(ray, back_m)};
+    for (const Crossing& crossing : all_crossings(longer, Collected::partly_there)) {
+        if (!meets_front(crossing.id.instance, crossing.at, ray) || !in_one_plane(ray, at, crossing.at))
+            continue;
+        Candidate front;
+        front.id = crossing.id;
+        front.set = &set_of(crossing.id.instance, crossing.id.set);
+        return hit_at(front, crossing.at, ray);
+    }
+    return std::nullopt;
 }
 
 Hit Scene::hit_at(const Candidate& candidate, const Intersection& at, const Ray& ray) const {
@@ -119,57 +148,89 @@ void Scene::occluded(std::span<const Ray> rays, std::vector<bool>& answers) cons
         answers.push_back(stream[n].tfar < 0 || (Sides(rays[n]).count > 1 && occluded(rays[n])));
 }
 
-Scene::Passed Scene::passed(const Ray& ray) const {
-    Passed passed;
-    for (const Crossing& pane : all_crossings(ray, Collected::not_there)) {
-        const TrianglePoint point =
-            point_of(set_of(pane.id.instance, pane.id.set), pane.id.triangle, pane.at);
-        passed.tint *= tint_at(point);
-        passed.share *= passed_at(point);
+// Of an edge that two triangles of a pane share, one of them counts.
+std::vector<Crossing> Scene::panes(const Ray& ray, Collected wanted, bool to_surface) const {
+    std::vector<Crossing> panes;
+    for (const Crossing& crossing : all_crossings(ray, wanted)) {
+        const auto is_the_same = [&](const Crossing& other) {
+            return other.id.instance == crossing.id.instance && other.id.set == crossing.id.set &&
+                   glm::dot(other.at.normal, crossing.at.normal) > 0 &&
+                   in_one_plane(ray, other.at, crossing.at);
+        };
+        const bool at_end =
+            to_surface && holds_end(ray, set_of(crossing.id.instance, crossing.id.set), crossing, *this);
+        if (!at_end && std::ranges::none_of(panes, is_the_same))
+            panes.push_back(crossing);
+    }
+    return panes;
+}
+
+GlassPassed Scene::passed(const Ray& ray, bool to_surface) const {
+    GlassPassed passed;
+    for (const Crossing& pane : panes(ray, Collected::through_glass, to_surface)) {
+        const GlassPassed once =
+            passed_glass_at(point_of(set_of(pane.id.instance, pane.id.set), pane.id.triangle, pane.at));
+        passed.tint *= once.tint;
+        passed.share *= once.share;
     }
     return passed;
 }
 
-glm::vec3 Scene::share_seen(const Ray& ray) const {
+glm::vec3 Scene::share_seen(const Ray& ray, bool to_surface) const {
     Query query(*this, {&ray, 1});
-    query.to_surface = true;
+    query.to_surface = to_surface;
     query.by_chance = false;
-    if (is_met(std::move(query), ray))
+    if (is_met(query, ray) || (query.ends_on_back && ends_behind(ray)))
         return glm::vec3(0);
     glm::vec3 share(1);
     if (!kinds_.partly_there)
         return share;
-    for (const Crossing& pane : all_crossings(ray, Collected::partly_there)) {
-        const TriangleSet& set = set_of(pane.id.instance, pane.id.set);
-        if (!holds_end(ray, set, pane, *this))
-            share *= passed_at(point_of(set, pane.id.triangle, pane.at));
-    }
+    for (const Crossing& pane : panes(ray, Collected::partly_there, to_surface))
+        share *= passed_at(point_of(set_of(pane.id.instance, pane.id.set), pane.id.triangle, pane.at));
     return share;
+}
+
+// Whether a front lies in the plane of the back.
+bool Scene::is_covered(const Crossing& back, const std::vector<Crossing>& crossings, const Ray& ray) const {
+    return std::ranges::any_of(crossings, [&](const Crossing& other) {
+        return meets_front(other.id.instance, other.at, ray) && in_one_plane(ray, back.at, other.at);
+    });
 }
 
 std::size_t Scene::crossings(const Ray& ray) const {
     const std::vector<Crossing> crossings = all_crossings(ray, Collected::there);
-    const auto is_front = [&](const Crossing& c) { return meets_front(c.id.instance, c.at, ray); };
     // Of a front and a back in one plane the front alone counts.
     const auto makes_way = [&](const Crossing& back) {
-        return !is_front(back) && std::ranges::any_of(crossings, [&](const Crossing& other) {
-            return is_front(other) && in_one_plane(ray, back.at, other.at);
-        });
+        return !meets_front(back.id.instance, back.at, ray) && is_covered(back, crossings, ray);
     };
     return crossings.size() - static_cast<std::size_t>(std::ranges::count_if(crossings, makes_way));
 }
 
 bool Scene::occluded(const Ray& ray) const {
-    return is_met(Query(*this, {&ray, 1}), ray);
+    Query query(*this, {&ray, 1});
+    return is_met(query, ray);
 }
 
 bool Scene::hides_surface(const Ray& ray) const {
     Query query(*this, {&ray, 1});
     query.to_surface = true;
-    return is_met(std::move(query), ray);
+    return is_met(query, ray) || (query.ends_on_back && ends_behind(ray));
 }
 
-bool Scene::is_met(Query query, const Ray& ray) const {
+// Whether what the ray ends on turns a blind back to it.
+bool Scene::ends_behind(const Ray& ray) const {
+    // A front in the same plane may lie beyond the end, by rounding.
+    const Ray longer{ray.origin, ray.direction, ray.far_m + plane_slack(ray, ray.far_m)};
+    const std::vector<Crossing> crossings = all_crossings(longer, Collected::there);
+    return std::ranges::any_of(crossings, [&](const Crossing& crossing) {
+        const TriangleSet& set = set_of(crossing.id.instance, crossing.id.set);
+        return !meets_front(crossing.id.instance, crossing.at, ray) &&
+               !is_two_sided(*set.material, instances_[crossing.id.instance].role) &&
+               holds_end(ray, set, crossing, *this) && !is_covered(crossing, crossings, ray);
+    });
+}
+
+bool Scene::is_met(Query& query, const Ray& ray) const {
     const Sides sides(ray);
     for (int side = 0; side < sides.count; ++side) {
         RTCRay r;

@@ -74,21 +74,18 @@ class Scene {
     // Textures are averaged over a width of `footprint_m`.
     [[nodiscard]] Surface surface(const Hit& hit, float footprint_m) const;
     [[nodiscard]] bool occluded(const Ray& ray) const;
-    // The same of a ray that ends on a surface, or on a light in its plane: that does not hide it.
+    // The same of a ray that ends on a surface, or on a light in its plane: that does not hide it, but for
+    // the back of a one-sided one, where no front lies in its plane.
     [[nodiscard]] bool hides_surface(const Ray& ray) const;
     // The same for many rays at once, which Embree does faster where they are incoherent.
     void occluded(std::span<const Ray> rays, std::vector<bool>& answers) const;
-    // What clear glass that lets the ray through does to it: alpha alone colours nothing.
-    struct Passed {
-        glm::vec3 tint{1};  // what its light is multiplied with, at most 1
-        glm::vec3 share{
-            1};  // of light that would go the same way again: what lets it through, without chance
-    };
-    [[nodiscard]] Passed passed(const Ray& ray) const;
+    // What clear glass does to light that it lets through. What the ray ends on, as hides_surface has it,
+    // does nothing.
+    [[nodiscard]] GlassPassed passed(const Ray& ray, bool to_surface = false) const;
     [[nodiscard]] bool has_glass() const { return kinds_.glass; }
-    // The share of light that comes along a ray that ends on a light, by channel, as hides_surface has it,
-    // but without chance: for rays that stand alone and not for many.
-    [[nodiscard]] glm::vec3 share_seen(const Ray& ray) const;
+    // The share of light that comes along a ray, by channel, as hides_surface (or occluded) has it, but
+    // without chance: for rays that stand alone and not for many.
+    [[nodiscard]] glm::vec3 share_seen(const Ray& ray, bool to_surface) const;
     // How many surfaces the ray crosses; a front and a back in one plane are one.
     [[nodiscard]] std::size_t crossings(const Ray& ray) const;
 
@@ -134,7 +131,15 @@ class Scene {
     Scene() = default;
     void add_instance(std::uint32_t object, const MeshBvh& bvh);
     void add_in_world_space(std::uint32_t object, const Region& region, float reach_m);
-    [[nodiscard]] bool is_met(Query query, const Ray& ray) const;
+    [[nodiscard]] bool is_met(Query& query, const Ray& ray) const;
+    [[nodiscard]] bool ends_behind(const Ray& ray) const;
+    [[nodiscard]] std::vector<Crossing> panes(const Ray& ray, Collected wanted, bool to_surface) const;
+    [[nodiscard]] bool is_covered(const Crossing& back,
+                                  const std::vector<Crossing>& crossings,
+                                  const Ray& ray) const;
+    [[nodiscard]] std::optional<Hit> front_skin(const Candidate& back,
+                                                const Intersection& at,
+                                                const Ray& ray) const;
     [[nodiscard]] Hit hit_at(const Candidate& candidate, const Intersection& at, const Ray& ray) const;
     [[nodiscard]] std::vector<Crossing> all_crossings(const Ray& ray, Collected wanted) const;
     [[nodiscard]] const TriangleSet& set_of(std::uint32_t instance, std::uint32_t embree_geometry) const;

@@ -107,7 +107,7 @@ float presence_at(const TrianglePoint& point) {
         case map::AlphaMode::mask:
             return alpha_at(point) >= material.alpha_cutoff ? 1.0f : 0.0f;
         case map::AlphaMode::blend:
-            return alpha_at(point);
+            return std::min(alpha_at(point), 1.0f);
     }
     return 1;
 }
@@ -173,13 +173,12 @@ bool is_there(const TrianglePoint& point) {
     return present * (1 - clear) > coin_at(point);
 }
 
-glm::vec3 tint_at(const TrianglePoint& point) {
-    // What alpha takes away colours nothing.
+GlassPassed passed_glass_at(const TrianglePoint& point) {
     if (!(point.material().transmission > 0) || presence_at(point) <= coin_at(point))
-        return glm::vec3(1);
+        return {};
     const glm::vec3 colour = unfiltered_colour(point);
     const float most = map::brightest(colour);
-    return most > 0 ? colour / most : glm::vec3(1);
+    return {most > 0 ? colour / most : glm::vec3(1), colour * clear_share(point)};
 }
 
 glm::vec3 passed_at(const TrianglePoint& point) {

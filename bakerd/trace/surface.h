@@ -61,8 +61,13 @@ struct Footprint {
 // the brightest channel: so no path is worth more behind it than before.
 [[nodiscard]] bool is_there(const TrianglePoint& point);
 
-// What light that passes clear glass is multiplied with. REQUIRES: !is_there(point).
-[[nodiscard]] glm::vec3 tint_at(const TrianglePoint& point);
+// What clear glass does to light that passes it: nothing, where it is alpha that takes the surface away.
+// REQUIRES: !is_there(point).
+struct GlassPassed {
+    glm::vec3 tint{1};   // what the light is multiplied with, at most 1
+    glm::vec3 share{1};  // of light that would go the same way again, without chance
+};
+[[nodiscard]] GlassPassed passed_glass_at(const TrianglePoint& point);
 
 // The share of light that goes straight through at the point, by channel, without chance.
 [[nodiscard]] glm::vec3 passed_at(const TrianglePoint& point);

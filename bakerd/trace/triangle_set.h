@@ -47,6 +47,10 @@ struct TriangleSet {
     return {p[t.x], p[t.y], p[t.z]};
 }
 
+[[nodiscard]] inline bool is_decided_by_chance(const TriangleSet& set) {
+    return set.mixed && is_partly_there(*set.material);
+}
+
 [[nodiscard]] inline TrianglePoint point_of(const TriangleSet& set,
                                             std::uint32_t triangle_of_set,
                                             const Intersection& at) {

@@ -140,6 +140,21 @@ TEST(TouchingRooms, AreAsLightAsARoomAlone) {
     }
 }
 
+// Two one-sided skins, each there by chance: where one is met from behind, it is the other one's front.
+TEST(TouchingRooms, SkinsOfABlendedThingHaveNoBack) {
+    GltfBuilder b;
+    b.place(ground(100), "", b.add_material({.colour = {0, 0, 0, 1}}));
+    const int curtain = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 0.5f}});
+    b.json["materials"][static_cast<std::size_t>(curtain)]["alphaMode"] = "BLEND";
+    Shape down = ground(2000, 3);
+    for (std::size_t t = 0; t < down.indices.size(); t += 3)
+        std::swap(down.indices[t], down.indices[t + 1]);
+    b.place(joined(ground(2000, 3), down), "", curtain);
+    const auto world = open_world(b);
+    for (const float height_m : {1.0f, 5.0f})
+        EXPECT_EQ(light_at(*world, {5, 6, height_m}, 2048).back_hits, 0u) << height_m;
+}
+
 // Behind a wall of thickness nothing changes: it still absorbs.
 TEST(TouchingRooms, BackThatNoFrontCoversAbsorbs) {
     Building building(sites()[1]);
@@ -204,6 +219,50 @@ TEST(FlushLamp, ShadeBeforeItHidesIt) {
         const bake::ProbeLight light = light_at(*world, building.in_world(probe), 64);
         for (const float value : light.static_irradiance[0])
             EXPECT_EQ(value, 0);
+    }
+}
+
+// From behind, a one-sided sheet hides it, as it hides all else.
+TEST(FlushLamp, DoesNotShineThroughTheBackOfASheet) {
+    for (const Site& site : sites()) {
+        for (const bool double_sided : {false, true}) {
+            Building building(site);
+            building.place(ground(30, -5), plaster(building.builder, false, {0, 0, 0, 1}));
+            // A ceiling without anything above it, its front down.
+            building.place(quad({-4, 2, -4}, {4, 2, -4}, {4, 2, 4}, {-4, 2, 4}),
+                           plaster(building.builder, double_sided, {0, 0, 0, 1}));
+            building.lamp({0.5, 2, 0.25}, 6830);
+            const auto world = building.open();
+            const auto sum = [&](const glm::dvec3& at) {
+                double all = 0;
+                const bake::ProbeLight light = light_at(*world, building.in_world(at), 64);
+                for (const float value : light.static_irradiance[0])
+                    all += static_cast<double>(value);
+                return all;
+            };
+            for (const glm::dvec3& offset : {glm::dvec3(1, 1.5, 0), {-3, 0.5, 2}, {0.1, 1, 3}}) {
+                EXPECT_GT(sum(glm::dvec3(0, 2, 0) - offset), 0) << site.name;
+                EXPECT_EQ(sum(glm::dvec3(0, 2, 0) + offset) > 0, double_sided) << site.name;
+            }
+        }
+    }
+}
+
+// In the plane of two walls that touch it stands in both rooms: nobody can tell which one it is meant for.
+TEST(FlushLamp, InTouchingWallsLightsBothRooms) {
+    for (const Site& site : sites()) {
+        Building building(site);
+        const int black = plaster(building.builder, false, {0, 0, 0, 1});
+        building.place(room({-4, -2, -4}, {4, 2, 4}), black);
+        building.place(room({4, -1.5f, -3}, {11, 2.5f, 5}), black);
+        building.lamp({4, 0.5, 0.25}, 6830);
+        const auto world = building.open();
+        for (const double x : {1.0, 7.0}) {
+            const glm::vec3 at = building.in_world({x, 0, 1});
+            const glm::dvec3 stands = glm::round(glm::dvec3(at) * 1024.0) / 1024.0;
+            expect_lit_by(light_at(*world, at, 64), glm::dvec3(building.in_world({4, 0.5, 0.25})) - stands,
+                          6830);
+        }
     }
 }
 

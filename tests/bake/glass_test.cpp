@@ -171,6 +171,58 @@ TEST(ClearGlass, LocalTransferPassesItTwice) {
     }
 }
 
+// What no ray comes near must not matter.
+TEST(ClearGlass, PaneFarAwayChangesNothing) {
+    const auto local = [](bool with_pane) {
+        GltfBuilder b;
+        b.place(ground(200), "", b.add_material({.colour = {0.8f, 0.8f, 0.8f, 1}}));
+        const int curtain = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 0.5f}, .double_sided = true});
+        b.json["materials"][static_cast<std::size_t>(curtain)]["alphaMode"] = "BLEND";
+        b.place(ground(200, 0.5f), "", curtain);
+        if (with_pane)
+            b.place(quad({60, -9, 0}, {61, -9, 0}, {61, -8, 0}, {60, -8, 0}), "", glass_material(b, {}));
+        const auto world = open_world(b);
+        const trace::FloatMode float_mode;
+        const auto scene = world->scene_for({0, 0}, 512);
+        const std::vector<glm::ivec3> places = {{20480, 20480, 1536}, {20480, 21504, 3072}};
+        return bake::integrate_local(*scene, places, places.size(),
+                                     *world->samples(1024, bake::local_sample_dimensions(2)), {2, 512})
+            .pairs;
+    };
+    EXPECT_EQ(local(false), local(true));
+}
+
+// A pane that glows does not colour its own light on the way out.
+TEST(ClearGlass, GlowingPaneIsNotItsOwnFilter) {
+    const auto lit = [](const glm::vec3& colour) {
+        GltfBuilder b;
+        b.place(ground(200), "", b.add_material({.colour = {0.8f, 0.8f, 0.8f, 1}}));
+        const int pane = glass_material(b, {colour, 0.5}, true);
+        Json& json = b.json["materials"][static_cast<std::size_t>(pane)];
+        json["emissiveFactor"] = {1, 1, 1};
+        json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 683000;
+        b.place(quad({-0.3f, 3, -0.3f}, {0.3f, 3, -0.3f}, {0.3f, 3, 0.3f}, {-0.3f, 3, 0.3f}), "", pane);
+        return light_at(*open_world(b), {0.5f, 0.25f, 1}, 16384, 1).static_irradiance;
+    };
+    // As much of it is there in both: by the brightest channel.
+    const auto white = lit({1, 1, 1}), red = lit({1, 0.1f, 0.1f});
+    for (std::size_t c = 0; c < channel_count; ++c)
+        EXPECT_NEAR(red[c][3], white[c][3], 0.05 * static_cast<double>(white[c][3])) << c;
+}
+
+// Straight through the diagonal of a square pane, along an axis: both triangles are met, and one pane.
+TEST(ClearGlass, SharedEdgeIsOnePane) {
+    GltfBuilder b;
+    b.place(ground(20), "", b.add_material({.colour = {0, 0, 0, 1}}));
+    b.place(quad({0, 3, -8}, {0, 3, 0}, {8, 3, 0}, {8, 3, -8}), "",
+            glass_material(b, {{1, 1, 1}, 0.5}, true));
+    b.add_node(
+        {.light = b.add_light({{"type", "point"}, {"intensity", 683}}), .translation = glm::dvec3(4, 5, -4)});
+    const auto world = open_world(b);
+    EXPECT_NEAR(light_at(*world, {4, 4, 1}, 64, 0).static_irradiance[0][0],
+                0.5 * std::numbers::inv_pi / 16 * 0.577350, 1e-5);
+}
+
 // Clear where the picture's red says so.
 TEST(ClearGlass, PictureSaysWhereItIsClear) {
     GltfBuilder b;
