@@ -5,6 +5,7 @@
 #include "bakerd/map/mesh_placement.h"
 #include "bakerd/map/node_role.h"
 #include "bakerd/map/node_transform.h"
+#include "bakerd/map/node_tree.h"
 #include "bakerd/map/warning.h"
 
 #include <fmt/format.h>
@@ -32,48 +33,6 @@ bool is_finite(const glm::dmat4& m) {
         }
     }
     return true;
-}
-
-// Coarser levels of detail of others (MSFT_lod), by node: they stand in the place of those, never beside
-// them.
-std::vector<bool> coarser_levels(const tinygltf::Model& model) {
-    std::vector<bool> coarser(model.nodes.size(), false);
-    for (std::size_t finest = 0; finest < coarser.size(); ++finest) {
-        const auto levels = model.nodes[finest].extensions.find("MSFT_lod");
-        if (levels == model.nodes[finest].extensions.end())
-            continue;
-        const tinygltf::Value& ids = levels->second.Get("ids");
-        for (int n = 0; n < static_cast<int>(ids.ArrayLen()); ++n) {
-            const auto level = static_cast<std::size_t>(ids.Get(n).GetNumberAsInt());
-            if (level != finest)
-                coarser[level] = true;
-        }
-    }
-    return coarser;
-}
-
-// Whether the node says that it and its children are not to be seen.
-bool is_hidden(const tinygltf::Node& node) {
-    const auto visibility = node.extensions.find("KHR_node_visibility");
-    return visibility != node.extensions.end() && visibility->second.Has("visible") &&
-           !visibility->second.Get("visible").Get<bool>();
-}
-
-// The default scene's roots; of a file without scenes, all nodes that are nobody's child.
-std::vector<int> root_nodes(const tinygltf::Model& model) {
-    if (!model.scenes.empty())
-        return at_index(model.scenes, std::max(model.defaultScene, 0)).nodes;
-    std::vector<bool> is_child(model.nodes.size(), false);
-    for (const tinygltf::Node& node : model.nodes) {
-        for (int child : node.children)
-            is_child[static_cast<std::size_t>(child)] = true;
-    }
-    std::vector<int> roots;
-    for (std::size_t n = 0; n < is_child.size(); ++n) {
-        if (!is_child[n])
-            roots.push_back(static_cast<int>(n));
-    }
-    return roots;
 }
 
 // A node on its way, in the frame of its parent, with the purpose that it inherits.
