@@ -77,6 +77,10 @@ void Recorder::run() {
         Pending pending = std::move(pending_.front());
         pending_.pop_front();
         lock.unlock();
+        // Before the sector is recorded: after its last one a job no longer holds its files, and its client
+        // would find some of them gone before they are pulled.
+        if (auto kept = cache_.keep_to_limit(); !kept)
+            spdlog::error("{}", kept.error().message);
         const bool recorded = try_to_record(pending);
         lock.lock();
         if (recorded)
@@ -109,8 +113,6 @@ bool Recorder::try_to_record(Pending& pending) {
     sector.jobs = book_.leave(sector.id, sector.jobs);
     if (!sector.jobs.empty())
         return try_to_record(pending);
-    if (auto kept = cache_.keep_to_limit(); !kept)
-        spdlog::error("{}", kept.error().message);
     return true;
 }
 
