@@ -78,8 +78,7 @@ class Integrator {
         watch(path, end_of(path.ray, hit));
         if (!hit)
             hit = doubted(path.ray);
-        if (task_.scene.has_glass())
-            path.throughput *= tint(path.ray, hit);
+        path.throughput *= tint(path.ray, hit);
         if (!hit) {
             add_sky(path);
             return false;

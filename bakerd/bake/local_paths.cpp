@@ -43,8 +43,7 @@ class LocalPath {
         watch(end_of(ray_, hit));
         if (!hit)
             return false;
-        if (start_.scene.has_glass())
-            pass_glass(hit->distance_m, bounce);
+        pass_glass(hit->distance_m, bounce);
         footprint_m_ += hit->distance_m * later_footprint;
         const trace::Surface surface = start_.scene.surface(*hit, footprint_m_);
         if (surface.absorbs)

@@ -136,8 +136,7 @@ class LocalIntegrator {
         for (std::size_t n = 0; n < work.shadows.size(); ++n) {
             if (work.hidden[n])
                 continue;
-            if (scene_.has_glass())
-                work.joined[n].tint = scene_.passed(work.shadows[n]).tint;
+            work.joined[n].tint = scene_.passed(work.shadows[n]).tint;
             add(group, work.joined[n], work);
         }
     }

@@ -145,7 +145,7 @@ glm::vec3 StaticLight::share_seen(const glm::vec3& start,
     const bool hidden = incident.target ? task_.scene.hides_surface(ray) : task_.scene.occluded(ray);
     if (hidden)
         return glm::vec3(0);
-    return task_.scene.has_glass() ? task_.scene.passed(ray, incident.target.has_value()).tint : glm::vec3(1);
+    return task_.scene.passed(ray, incident.target.has_value()).tint;
 }
 
 trace::Ray StaticLight::shadow_ray(const glm::vec3& start,

@@ -103,7 +103,7 @@ bool is_wanted(const Candidate& hit, Collected wanted) {
 
 // Whether it hides what lies behind.
 bool is_in_the_way(const Candidate& hit, const Query& query) {
-    return query.by_chance || !is_decided_by_chance(*hit.set) ? is_there(hit) : false;
+    return (query.by_chance || !is_decided_by_chance(*hit.set)) && is_there(hit);
 }
 
 // Of two at the same distance the one of the smaller id is nearer.

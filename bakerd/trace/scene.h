@@ -82,7 +82,6 @@ class Scene {
     // What clear glass does to light that it lets through. What the ray ends on, as hides_surface has it,
     // does nothing.
     [[nodiscard]] GlassPassed passed(const Ray& ray, bool to_surface = false) const;
-    [[nodiscard]] bool has_glass() const { return kinds_.glass; }
     // The share of light that comes along a ray, by channel, as hides_surface (or occluded) has it, but
     // without chance: for rays that stand alone and not for many.
     [[nodiscard]] glm::vec3 share_seen(const Ray& ray, bool to_surface) const;

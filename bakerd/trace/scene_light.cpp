@@ -46,6 +46,8 @@ std::vector<Crossing> Scene::panes(const Ray& ray, Collected wanted, bool to_sur
 
 GlassPassed Scene::passed(const Ray& ray, bool to_surface) const {
     GlassPassed passed;
+    if (!kinds_.glass)
+        return passed;
     for (const Crossing& pane : panes(ray, Collected::through_glass, to_surface)) {
         const GlassPassed once =
             passed_glass_at(point_of(set_of(pane.id.instance, pane.id.set), pane.id.triangle, pane.at));
