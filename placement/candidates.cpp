@@ -2,10 +2,14 @@
 
 #include "placement/units.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <compare>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace drtv::placement {
 namespace {
@@ -29,8 +33,8 @@ struct Column {
 
 // Visits the columns of a lattice in a square; a column stands in the middle of its lattice square.
 template <class Visit>
-void visit_columns(std::int32_t lattice_m, const Square& square, Visit visit) {
-    const double half_m = lattice_m / 2.0;
+void visit_columns(double lattice_m, const Square& square, Visit visit) {
+    const double half_m = lattice_m / 2;
     const auto first = [&](double m) {
         return static_cast<std::int32_t>(std::ceil((m - half_m) / lattice_m));
     };
@@ -41,14 +45,29 @@ void visit_columns(std::int32_t lattice_m, const Square& square, Visit visit) {
     }
 }
 
+float distance_at(const Position& position, const Input& input, const Settings& settings) {
+    float distance_m = settings.min_distance_m;
+    bool in_volume = false;
+    const glm::dvec3 point(metres(position));
+    for (const SpacingVolume& spacing : input.spacings) {
+        if (!spacing.volume.contains(point))
+            continue;
+        distance_m = in_volume ? std::min(distance_m, spacing.min_distance_m) : spacing.min_distance_m;
+        in_volume = true;
+    }
+    return distance_m;
+}
+
 // Collects the proposals of one column, from the bottom up.
 class ColumnProposals {
   public:
-    ColumnProposals(const Column& column, Kind kind, std::uint32_t stride, std::vector<Candidate>& out)
-        : out_(out) {
+    ColumnProposals(const Column& column,
+                    const Candidate& like,
+                    std::uint32_t stride,
+                    std::vector<Candidate>& out)
+        : out_(out), next_(like) {
         next_.position.x = to_units(column.x_m);
         next_.position.y = to_units(column.y_m);
-        next_.kind = kind;
         next_.lattice_class = lattice_class_of(column.a, column.b, stride);
         const auto a = static_cast<std::uint32_t>(column.a);
         const auto b = static_cast<std::uint32_t>(column.b);
@@ -66,36 +85,45 @@ class ColumnProposals {
     Candidate next_;
 };
 
-// Free height above a surface: up to the next one; none when that one is left through its back, because then
-// the space between is the inside of something.
-float free_height(const std::vector<ColumnHit>& hits, std::size_t surface) {
-    for (std::size_t above = surface; above-- > 0;) {
-        const float height = hits[above].z_m - hits[surface].z_m;
-        if (height < same_surface_m && hits[above].up_facing == hits[surface].up_facing)
-            continue;
-        return hits[above].down_facing ? height : 0;
-    }
-    return std::numeric_limits<float>::infinity();
-}
+// Surfaces of a column at one height.
+struct Level {
+    float low_m;
+    std::optional<float> floor_m;  // the lowest that faces up
+    bool ceiling = false;          // one of them faces down
+};
 
-void propose_on_ground(const Column& column,
-                       const Surroundings& surroundings,
-                       std::uint32_t stride,
-                       std::vector<ColumnHit>& hits,
-                       std::vector<Candidate>& out) {
-    surroundings.column({column.x_m, column.y_m}, hits);
-    ColumnProposals proposals(column, Kind::ground, stride, out);
-    float last_m = -std::numeric_limits<float>::infinity();
+// From the bottom up, whatever the order of what lies at one height.
+std::vector<Level> levels_of(const std::vector<ColumnHit>& hits) {
+    std::vector<Level> levels;
     for (std::size_t n = hits.size(); n-- > 0;) {
         const ColumnHit& hit = hits[n];
-        if (!hit.up_facing || hit.z_m - last_m < same_surface_m)
+        if (levels.empty() || hit.z_m - levels.back().low_m >= same_surface_m)
+            levels.push_back({hit.z_m, std::nullopt, false});
+        Level& level = levels.back();
+        if (hit.up_facing && !level.floor_m)
+            level.floor_m = hit.z_m;
+        level.ceiling = level.ceiling || hit.down_facing;
+    }
+    return levels;
+}
+
+// Up to the level above; none when that one is left through its back, because then the space between is the
+// inside of something.
+float free_height(const std::vector<Level>& levels, std::size_t floor) {
+    if (floor + 1 == levels.size())
+        return std::numeric_limits<float>::infinity();
+    const Level& above = levels[floor + 1];
+    return above.ceiling ? above.low_m - *levels[floor].floor_m : 0;
+}
+
+void propose_on_ground(const std::vector<ColumnHit>& hits, ColumnProposals proposals) {
+    const std::vector<Level> levels = levels_of(hits);
+    for (std::size_t n = 0; n < levels.size(); ++n) {
+        if (!levels[n].floor_m)
             continue;
-        const float free_m = free_height(hits, n);
-        if (free_m < min_free_height_m)
-            continue;
-        last_m = hit.z_m;
-        const float above_m = std::min(probe_height_m, free_m / 2);
-        proposals.add(double{hit.z_m} + above_m);
+        const float free_m = free_height(levels, n);
+        if (free_m >= min_free_height_m)
+            proposals.add(double{*levels[n].floor_m} + std::min(probe_height_m, free_m / 2));
     }
 }
 
@@ -114,23 +142,31 @@ bool stands_under(const Column& column, const Box& box) {
 }
 
 // Tops of the combined boxes over a point: intervals of height that overlap are one plant, or one thicket.
-void propose_on_vegetation(const Column& column,
-                           std::span<const Box> vegetation,
-                           std::uint32_t stride,
-                           std::vector<Candidate>& out) {
+void propose_on_vegetation(const Column& column, std::span<const Box> vegetation, ColumnProposals proposals) {
     std::vector<Height> boxes;
     for (const Box& box : vegetation) {
         if (stands_under(column, box))
             boxes.push_back({box.low.z, box.high.z});
     }
     std::sort(boxes.begin(), boxes.end());
-    ColumnProposals proposals(column, Kind::vegetation, stride, out);
     for (std::size_t n = 0; n < boxes.size();) {
         float top_m = boxes[n].high_m;
         for (++n; n < boxes.size() && boxes[n].low_m <= top_m; ++n)
             top_m = std::max(top_m, boxes[n].high_m);
         proposals.add(double{top_m} + probe_height_m);
     }
+}
+
+// The part of the square over which volumes of that distance reach.
+Square part_with(float distance_m, const Square& square, std::span<const SpacingVolume> spacings) {
+    Square part{square.high, square.low};
+    for (const SpacingVolume& spacing : spacings) {
+        if (spacing.min_distance_m != distance_m)
+            continue;
+        part.low = glm::min(part.low, glm::dvec2(spacing.volume.low()));
+        part.high = glm::max(part.high, glm::dvec2(spacing.volume.high()));
+    }
+    return {glm::max(part.low, square.low), glm::min(part.high, square.high)};
 }
 
 }  // namespace
@@ -147,31 +183,62 @@ std::uint32_t lattice_class_of(std::int32_t a, std::int32_t b, std::uint32_t str
     return value;
 }
 
-std::uint32_t lattice_stride(std::int32_t lattice_m, float min_distance_m) {
+std::uint32_t lattice_stride(float lattice_m, float min_distance_m) {
     std::uint32_t stride = 1;
-    const auto step_m = static_cast<float>(lattice_m);
-    while (static_cast<float>(stride) * step_m < min_distance_m)
+    while (static_cast<float>(stride) * lattice_m < min_distance_m)
         stride *= 2;
     return stride;
 }
 
+float lattice_side_m(Kind kind, float min_distance_m) {
+    return kind == Kind::vegetation ? std::min(vegetation_lattice_m, 2 * min_distance_m)
+                                    : std::min(ground_lattice_m, min_distance_m);
+}
+
+std::vector<float> distances_kept(const Settings& settings, std::span<const SpacingVolume> spacings) {
+    std::vector<float> distances = {settings.min_distance_m};
+    for (const SpacingVolume& spacing : spacings) {
+        if (std::ranges::find(distances, spacing.min_distance_m) == distances.end())
+            distances.push_back(spacing.min_distance_m);
+    }
+    return distances;
+}
+
 std::vector<Candidate> propose(const Square& square,
-                               std::span<const Box> vegetation,
+                               const Input& input,
                                const Surroundings& surroundings,
                                const Settings& settings) {
     std::vector<Candidate> candidates;
     std::vector<ColumnHit> hits;
-    const std::uint32_t ground_stride = lattice_stride(ground_lattice_m, settings.min_distance_m);
-    visit_columns(ground_lattice_m, square, [&](const Column& column) {
-        propose_on_ground(column, surroundings, ground_stride, hits, candidates);
-    });
-    const std::uint32_t vegetation_stride = lattice_stride(vegetation_lattice_m, settings.min_distance_m);
-    visit_columns(vegetation_lattice_m, square, [&](const Column& column) {
-        propose_on_vegetation(column, vegetation, vegetation_stride, candidates);
-    });
-    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-        return a.priority() < b.priority();
-    });
+    for (const float distance_m : distances_kept(settings, input.spacings)) {
+        const std::size_t first = candidates.size();
+        const Square part =
+            distance_m == settings.min_distance_m ? square : part_with(distance_m, square, input.spacings);
+        for (const Kind kind : {Kind::ground, Kind::vegetation}) {
+            Candidate like;
+            like.kind = kind;
+            like.min_distance_m = distance_m;
+            const float lattice_m = lattice_side_m(kind, distance_m);
+            const std::uint32_t stride = lattice_stride(lattice_m, distance_m);
+            visit_columns(double{lattice_m}, part, [&](const Column& column) {
+                const ColumnProposals proposals(column, like, stride, candidates);
+                if (kind == Kind::vegetation) {
+                    propose_on_vegetation(column, input.vegetation, proposals);
+                    return;
+                }
+                surroundings.column({column.x_m, column.y_m}, hits);
+                propose_on_ground(hits, proposals);
+            });
+        }
+        // Of each place those of its own distance stay.
+        const auto is_elsewhere = [&](const Candidate& candidate) {
+            return distance_at(candidate.position, input, settings) != distance_m;
+        };
+        const auto begin = candidates.begin() + static_cast<std::ptrdiff_t>(first);
+        if (!input.spacings.empty())
+            candidates.erase(std::remove_if(begin, candidates.end(), is_elsewhere), candidates.end());
+    }
+    std::ranges::sort(candidates, {}, &Candidate::priority);
     return candidates;
 }
 

@@ -14,12 +14,16 @@ inline constexpr float min_free_height_m = 1.5f;
 struct Candidate {
     Position position;
     Kind kind = Kind::ground;
+    bool moved = false;
+    float min_distance_m = 0;         // where it stands
     std::uint32_t lattice_class = 0;  // see lattice_class_of
     std::uint32_t level = 0;          // of several in one column, counted from the bottom
     std::uint64_t hash = 0;           // of the column; decides what the rest leaves open
 
+    // Where probes may stand nearest goes last.
     [[nodiscard]] auto priority() const {
-        return std::tie(kind, lattice_class, level, hash, position.x, position.y, position.z);
+        return std::tuple(
+            kind, -min_distance_m, lattice_class, level, hash, position.x, position.y, position.z);
     }
 };
 
@@ -28,7 +32,10 @@ struct Candidate {
 [[nodiscard]] std::uint32_t lattice_class_of(std::int32_t a, std::int32_t b, std::uint32_t stride);
 
 // Smallest power of two s for which s lattice steps are at least the distance.
-[[nodiscard]] std::uint32_t lattice_stride(std::int32_t lattice_m, float min_distance_m);
+[[nodiscard]] std::uint32_t lattice_stride(float lattice_m, float min_distance_m);
+
+// The side of the lattice's squares.
+[[nodiscard]] float lattice_side_m(Kind kind, float min_distance_m);
 
 // [low, high), world metres.
 struct Square {
@@ -36,9 +43,13 @@ struct Square {
     glm::dvec2 high;
 };
 
+// The distances that probes keep: the map's own first, then those of volumes, each once.
+[[nodiscard]] std::vector<float> distances_kept(const Settings& settings,
+                                                std::span<const SpacingVolume> spacings);
+
 // All proposals in the square, by priority.
 [[nodiscard]] std::vector<Candidate> propose(const Square& square,
-                                             std::span<const Box> vegetation,
+                                             const Input& input,
                                              const Surroundings& surroundings,
                                              const Settings& settings);
 

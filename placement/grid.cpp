@@ -1,118 +1,197 @@
 #include "placement/grid.h"
 
-#include <CGAL/Orthogonal_incremental_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
-#include <CGAL/Search_traits_adapter.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/property_map.h>
+#include "placement/spaces.h"
+#include "placement/units.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <compare>
+#include <functional>
+#include <optional>
 #include <utility>
-#include <vector>
 
 namespace drtv::placement {
 namespace {
 
-// Coordinates are whole numbers below 2^25, counted from the grid's corner, so that doubles hold squared
-// distances exactly.
-using Kernel = CGAL::Simple_cartesian<double>;
-using IndexedPoint = std::pair<Kernel::Point_3, std::size_t>;
-using Traits = CGAL::Search_traits_adapter<IndexedPoint,
-                                           CGAL::First_of_pair_property_map<IndexedPoint>,
-                                           CGAL::Search_traits_3<Kernel>>;
-using Search = CGAL::Orthogonal_incremental_neighbor_search<Traits>;
-
+constexpr auto cells_along = static_cast<std::int32_t>(grid_size);
+constexpr std::int32_t side = sector_size_m * units_per_m;
+constexpr std::int32_t cell_width = side / cells_along;
+static_assert(Spaces::lines_along == 2 * cells_along);
 constexpr std::int32_t margin_units = 2 * units_per_m;  // below the lowest and above the highest probe
 
-struct Neighbour {
-    double squared_distance;
-    std::size_t probe;
-
-    auto operator<=>(const Neighbour&) const = default;
+// Four corners of a cube that no two share an edge of, east, north and up: where the cell's points stand.
+struct Corner {
+    std::int32_t east, north, up;
 };
-
-// The `considered_probes` nearest by (distance, index).
-void nearest_probes(const Search::Tree& tree, const Position& centre, std::vector<Neighbour>& nearest) {
-    nearest.clear();
-    const Search search(tree, Kernel::Point_3(centre.x, centre.y, centre.z));
-    for (const auto& [point, squared] : search) {
-        // The search leaves the order of equal distances open: take all of them before sorting.
-        if (nearest.size() >= considered_probes && squared > nearest.back().squared_distance)
-            break;
-        nearest.push_back({squared, point.second});
-    }
-    std::sort(nearest.begin(), nearest.end());
-    nearest.resize(std::min(nearest.size(), considered_probes));
-}
-
-// In units, as places are, which count from the grid's corner.
-struct CellSize {
-    std::int32_t width;
-    std::int32_t height;
-
-    [[nodiscard]] Position centre(std::int32_t x, std::int32_t y, std::int32_t z) const {
-        return {x * width + width / 2, y * width + width / 2, z * height + height / 2};
-    }
-};
+constexpr std::array<Corner, 4> corners = {{{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}};
 
 // Sets the vertical extent.
-void span_probes(std::span<const Position> probes, ProbeGrid& grid) {
-    const auto by_height = [](const Position& a, const Position& b) { return a.z < b.z; };
+void span_probes(std::span<const GridProbe> probes, ProbeGrid& grid) {
+    const auto by_height = [](const GridProbe& a, const GridProbe& b) { return a.position.z < b.position.z; };
     const auto [lowest, highest] = std::minmax_element(probes.begin(), probes.end(), by_height);
-    const std::int32_t bottom = lowest->z - margin_units;
-    const std::int32_t top = highest->z + margin_units;
+    const std::int32_t bottom = lowest->position.z - margin_units;
+    const std::int32_t top = highest->position.z + margin_units;
     const std::int32_t height = std::max(units_per_m, (top - bottom + 15) / 16);
     grid.z_origin_units = bottom;
     grid.cell_height_units = static_cast<std::uint32_t>(height);
 }
 
+class GridBuild {
+  public:
+    GridBuild(std::int32_t i,
+              std::int32_t j,
+              std::span<const GridProbe> probes,
+              const Surroundings& surroundings)
+        : probes_(probes), surroundings_(surroundings) {
+        grid_.cells.fill(no_probe);
+        if (probes.empty())
+            return;
+        span_probes(probes, grid_);
+        corner_ = {i * side, j * side, grid_.z_origin_units};
+        for (const GridProbe& probe : probes)
+            places_.push_back(metres(probe.position));
+    }
+
+    ProbeGrid run() {
+        if (probes_.empty())
+            return grid_;
+        const float bottom_m = metres(corner_).z;
+        const float top_m = metres(corner_ + Position(0, 0, cells_along * cell_height())).z;
+        spaces_.emplace(Position(corner_.x, corner_.y, 0), bottom_m, top_m, surroundings_);
+        std::size_t cell = 0;
+        for (std::int32_t z = 0; z < cells_along; ++z) {
+            for (std::int32_t y = 0; y < cells_along; ++y) {
+                for (std::int32_t x = 0; x < cells_along; ++x)
+                    grid_.cells[cell++] = probe_for({x, y, z});
+            }
+        }
+        return grid_;
+    }
+
+  private:
+    // Squares of distances, nearest first.
+    struct Near {
+        std::int64_t squared_units;
+        std::uint8_t probe;
+        auto operator<=>(const Near&) const = default;
+    };
+    using Hides = std::function<bool(const glm::vec3&, const glm::vec3&)>;
+
+    std::uint8_t probe_for(const Position& cell) {
+        find_points(cell);
+        order_probes(cell);
+        if (order_.empty())
+            return no_probe;
+        if (points_.empty()) {
+            ++grid_.buried_cells;
+            return std::ranges::min(order_).probe;
+        }
+        if (const auto seen = best_seen(surroundings_.hidden))
+            return *seen;
+        ++grid_.blind_cells;
+        return best_seen(surroundings_.separated).value_or(std::ranges::min(order_).probe);
+    }
+
+    [[nodiscard]] std::int32_t cell_height() const {
+        return static_cast<std::int32_t>(grid_.cell_height_units);
+    }
+
+    // Sets the cell's points, and those that count.
+    void find_points(const Position& cell) {
+        points_.clear();
+        all_points_.clear();
+        const std::int32_t height = cell_height();
+        const float top_m = metres({0, 0, corner_.z + (cell.z + 1) * height}).z;
+        for (const auto& [east, north, up] : corners) {
+            const std::int32_t x = 2 * cell.x + east;
+            const std::int32_t y = 2 * cell.y + north;
+            const std::int32_t z = cell.z * height + (up != 0 ? height - height / 4 : height / 4);
+            const float z_m = metres({0, 0, corner_.z + z}).z;
+            all_points_.emplace_back(spaces_->line_at(x, y), z_m);
+            if (const auto free_m = spaces_->free_height(x, y, z_m, top_m))
+                points_.emplace_back(spaces_->line_at(x, y), *free_m);
+        }
+    }
+
+    // Sets the probes that the cell may name.
+    void order_probes(const Position& cell) {
+        const std::int32_t height = cell_height();
+        const Position centre = corner_ + Position(cell.x * cell_width + cell_width / 2,
+                                                   cell.y * cell_width + cell_width / 2,
+                                                   cell.z * height + height / 2);
+        order_.clear();
+        for (std::size_t p = 0; p < probes_.size(); ++p) {
+            if (may_name(probes_[p]))
+                order_.push_back(
+                    {squared_distance(centre, probes_[p].position), static_cast<std::uint8_t>(p)});
+        }
+    }
+
+    [[nodiscard]] bool may_name(const GridProbe& probe) const {
+        const auto holds_cell = [&](const ClosedVolume* interior) {
+            return std::ranges::all_of(
+                all_points_, [&](const glm::vec3& point) { return interior->contains(glm::dvec3(point)); });
+        };
+        return probe.interiors.empty() || std::ranges::any_of(probe.interiors, holds_cell);
+    }
+
+    // The nearest that at least half of the points see, else the one that most see.
+    std::optional<std::uint8_t> best_seen(const Hides& hides) {
+        // Mostly the nearest is the one.
+        std::ranges::iter_swap(order_.begin(), std::ranges::min_element(order_));
+        const std::size_t half = (points_.size() + 1) / 2;
+        std::optional<std::uint8_t> best;
+        std::size_t most = 0;
+        for (std::size_t n = 0; n < order_.size(); ++n) {
+            if (n == 1)
+                std::ranges::sort(order_.begin() + 1, order_.end());
+            const std::uint8_t probe = order_[n].probe;
+            const std::size_t seeing = points_that_see(probe, most, half, hides);
+            if (seeing >= half)
+                return probe;
+            if (seeing > most) {
+                most = seeing;
+                best = probe;
+            }
+        }
+        return best;
+    }
+
+    // No more than half, and not counted to the end when they cannot be more than `most`.
+    std::size_t points_that_see(std::uint8_t probe,
+                                std::size_t most,
+                                std::size_t half,
+                                const Hides& hides) const {
+        std::size_t seeing = 0;
+        for (std::size_t n = 0; n < points_.size() && seeing < half; ++n) {
+            if (seeing + (points_.size() - n) <= most)
+                break;
+            seeing += hides(points_[n], places_[probe]) ? 0u : 1u;
+        }
+        return seeing;
+    }
+
+    const std::span<const GridProbe> probes_;
+    const Surroundings& surroundings_;
+    ProbeGrid grid_;
+    Position corner_{};              // of the sector, at the grid's bottom
+    std::vector<glm::vec3> places_;  // of the probes
+    std::optional<Spaces> spaces_;
+    // Of the cell at work.
+    std::vector<glm::vec3> all_points_;
+    std::vector<glm::vec3> points_;
+    std::vector<Near> order_;
+};
+
 }  // namespace
 
 ProbeGrid build_grid(std::int32_t i,
                      std::int32_t j,
-                     std::span<const Position> probes,
+                     std::span<const GridProbe> probes,
                      const Surroundings& surroundings) {
     assert(probes.size() <= max_probes);
-    ProbeGrid grid;
-    grid.cells.fill(no_probe);
-    if (probes.empty())
-        return grid;
-    span_probes(probes, grid);
-
-    constexpr std::int32_t side = sector_size_m * units_per_m;
-    const Position corner(i * side, j * side, grid.z_origin_units);
-    std::vector<IndexedPoint> points;
-    for (std::size_t p = 0; p < probes.size(); ++p) {
-        const Position local = probes[p] - corner;
-        points.emplace_back(Kernel::Point_3(local.x, local.y, local.z), p);
-    }
-    Search::Tree tree(points.begin(), points.end());
-    tree.build();
-
-    std::vector<Neighbour> nearest;
-    const auto probe_for = [&](const Position& centre) {
-        nearest_probes(tree, centre, nearest);
-        const glm::vec3 eye = metres(corner + centre);
-        for (const Neighbour& near : nearest) {
-            if (surroundings.sees(eye, metres(probes[near.probe])))
-                return near.probe;
-        }
-        return nearest.front().probe;
-    };
-    constexpr auto cells_along = static_cast<std::int32_t>(grid_size);
-    const CellSize size{side / cells_along, static_cast<std::int32_t>(grid.cell_height_units)};
-    std::size_t cell = 0;
-    for (std::int32_t z = 0; z < cells_along; ++z) {
-        for (std::int32_t y = 0; y < cells_along; ++y) {
-            for (std::int32_t x = 0; x < cells_along; ++x) {
-                const std::size_t chosen = probe_for(size.centre(x, y, z));
-                grid.cells[cell++] = static_cast<std::uint8_t>(chosen);
-            }
-        }
-    }
-    return grid;
+    return GridBuild(i, j, probes, surroundings).run();
 }
 
 }  // namespace drtv::placement

@@ -1,12 +1,15 @@
-// The decisions. Manual probes stand; then proposals in the order of their priority, each kept if no kept one
-// is nearer than the minimal distance; last, those that stood in a solid and found a free place nearby. A
-// moved probe yields to any moved one of higher priority near it, kept or not: so no chain of decisions runs
-// far.
+// The decisions. Manual probes stand; then proposals in the order of their priority, each kept if it sees no
+// kept one nearer than the minimal distance; last, those that stood in a solid and found a free place nearby.
+// A moved probe yields to any moved one of higher priority that it sees near it, kept or not: so no chain of
+// decisions runs far.
 #include "placement/placement.h"
 
 #include "placement/candidates.h"
+#include "placement/manual.h"
+#include "placement/solid_test.h"
 #include "placement/thinning.h"
 #include "placement/units.h"
+#include "placement/way_out.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +18,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -24,50 +26,37 @@ namespace {
 
 constexpr std::int32_t sector_side = sector_size_m * units_per_m;
 
-// An order that no change elsewhere in a sector disturbs much.
-bool is_before(const Position& a, const Position& b) {
-    return std::tie(a.y, a.x, a.z) < std::tie(b.y, b.x, b.z);
-}
-
-// The manual probes of the whole map, each once.
-std::vector<Position> manual_positions(std::span<const glm::dvec3> manual) {
-    std::vector<Position> positions;
-    for (const glm::dvec3& m : manual)
-        positions.emplace_back(to_units(m.x), to_units(m.y), to_units(m.z));
-    std::ranges::sort(positions, is_before);
-    const auto repeated = std::ranges::unique(positions);
-    positions.erase(repeated.begin(), repeated.end());
-    return positions;
-}
-
 class Placer {
   public:
     Placer(const Input& input, const Surroundings& surroundings, const Settings& settings)
         : input_(input),
           surroundings_(surroundings),
           settings_(settings),
-          min_squared_(squared_units(settings.min_distance_m)),
-          manual_(manual_positions(input.manual)) {}
+          manual_(manual_probes(input.manual)) {}
 
     tl::expected<Placement, std::string> run() {
-        Placement placement;
-        for (const Position& position : manual_) {
-            if (in_sector(position))
-                placement.probes.push_back({position, Kind::manual});
+        for (const Manual& probe : manual_) {
+            if (in_sector(probe.position))
+                placement_.probes.push_back({probe.position, Kind::manual});
         }
-        if (placement.probes.size() > max_probes) {
+        const std::size_t manual_count = placement_.probes.size();
+        if (manual_count > max_probes) {
             return tl::unexpected(fmt::format("sector ({}, {}) holds {} manual probes, over the limit of {}",
                                               input_.i,
                                               input_.j,
-                                              placement.probes.size(),
+                                              manual_count,
                                               max_probes));
         }
+        for (const PlacedProbe& probe : placement_.probes) {
+            const StandsAt at = stands(probe.position);
+            if (at.stand != Stand::free)
+                placement_.buried_manual.push_back({probe.position, at.stand, at.thing});
+        }
         decide();
-        std::vector<PlacedProbe> automatic = thinned(placement.probes.size());
+        std::vector<PlacedProbe> automatic = thinned(manual_count);
         std::ranges::sort(automatic, is_before, &PlacedProbe::position);
-        placement.probes.insert(placement.probes.end(), automatic.begin(), automatic.end());
-        placement.report = report_;
-        return placement;
+        placement_.probes.insert(placement_.probes.end(), automatic.begin(), automatic.end());
+        return std::move(placement_);
     }
 
   private:
@@ -77,9 +66,10 @@ class Placer {
         return x >= 0 && x < sector_side && y >= 0 && y < sector_side;
     }
 
-    [[nodiscard]] bool in_solid(const Position& position) const {
-        const std::size_t backs = surroundings_.backs_met(metres(position), solid_test_directions());
-        return is_in_solid(backs);
+    [[nodiscard]] StandsAt stands(const Position& position) {
+        const StandsAt at = stands_at(position, surroundings_);
+        placement_.solid_tests.push_back({position, at.to_flip});
+        return at;
     }
 
     [[nodiscard]] bool in_volume(const Position& position) const {
@@ -88,76 +78,101 @@ class Placer {
         return std::ranges::any_of(input_.no_probes, holds_it);
     }
 
-    [[nodiscard]] bool is_near(const Position& a, const Position& b) const {
-        return squared_distance(a, b) < min_squared_;
+    [[nodiscard]] bool sees(const Position& a, const Position& b) const {
+        return !surroundings_.separated(metres(a), metres(b));
     }
 
-    [[nodiscard]] bool near_kept(const Position& position) const {
-        const auto near_position = [&](const Position& other) { return is_near(position, other); };
-        return std::ranges::any_of(manual_, near_position) ||
-               std::ranges::any_of(kept_, near_position, &Candidate::position);
+    // Whether a probe takes the place of another.
+    [[nodiscard]] bool is_near(const Position& a, const Position& b, float distance_m) const {
+        return squared_distance(a, b) < squared_units(distance_m) && sees(a, b);
     }
 
-    // The nearest free place within half the spacing, in the same sector.
-    [[nodiscard]] std::optional<Position> free_place(const Position& from) const {
-        for (float share : {0.125f, 0.25f, 0.5f}) {
-            const float way_units = share * settings_.min_distance_m * static_cast<float>(units_per_m);
-            for (const glm::vec3& direction : solid_test_directions()) {
-                // Truncated towards zero, so that the way stays within half the spacing.
-                const Position place = from + Position(direction * way_units);
-                if (sector_of(place.x) != sector_of(from.x) || sector_of(place.y) != sector_of(from.y))
+    [[nodiscard]] bool near_manual(const Position& position, float distance_m) const {
+        return std::ranges::any_of(manual_, [&](const Manual& probe) {
+            return squared_distance(position, probe.position) < squared_units(distance_m) &&
+                   serves(probe, position) && sees(position, probe.position);
+        });
+    }
+
+    [[nodiscard]] bool near_kept(const Position& position, float distance_m) const {
+        return near_manual(position, distance_m) || std::ranges::any_of(kept_, [&](const Candidate& other) {
+                   return is_near(position, other.position, std::min(distance_m, other.min_distance_m));
+               });
+    }
+
+    // The nearest free place within half the distance, in the same sector.
+    [[nodiscard]] std::optional<Position> free_place(const Candidate& from, Stand stand) {
+        for (const float share : {0.125f, 0.25f, 0.5f}) {
+            const float way_units = share * from.min_distance_m * static_cast<float>(units_per_m);
+            for (const glm::vec3& way : ways_out()) {
+                // Truncated towards zero, so that the way stays within half the distance.
+                const Position place = from.position + Position(way * way_units);
+                if (sector_of(place.x) != sector_of(from.position.x) ||
+                    sector_of(place.y) != sector_of(from.position.y) || in_volume(place))
                     continue;
-                if (!in_volume(place) && !in_solid(place))
+                if (leads_out(from.position, place, stand, surroundings_) &&
+                    stands(place).stand == Stand::free)
                     return place;
             }
         }
         return std::nullopt;
     }
 
+    struct Buried {
+        Candidate candidate;
+        StandsAt at;
+    };
+
     void decide() {
-        const double margin_m = decision_margin_m(settings_);
+        const double margin_m = double{decision_margin_m(settings_, input_.spacings)};
         const glm::dvec2 corner(input_.i * sector_size_m, input_.j * sector_size_m);
-        std::vector<Candidate> buried;
+        std::vector<Buried> buried;
         const Square square{corner - margin_m, corner + double{sector_size_m} + margin_m};
-        for (const Candidate& candidate : propose(square, input_.vegetation, surroundings_, settings_)) {
+        Report& report = placement_.report;
+        for (const Candidate& candidate : propose(square, input_, surroundings_, settings_)) {
             const bool ours = in_sector(candidate.position);
-            if (ours)
-                ++report_.candidates;
+            report.candidates += ours ? 1 : 0;
             if (in_volume(candidate.position)) {
-                if (ours)
-                    ++report_.removed_by_volume;
+                report.removed_by_volume += ours ? 1 : 0;
                 continue;
             }
-            if (near_kept(candidate.position))
+            if (near_kept(candidate.position, candidate.min_distance_m))
                 continue;
-            if (in_solid(candidate.position))
-                buried.push_back(candidate);
-            else
+            const StandsAt at = stands(candidate.position);
+            if (at.stand == Stand::free)
                 kept_.push_back(candidate);
+            else
+                buried.push_back({candidate, at});
         }
         move_out(buried);
     }
 
-    void move_out(const std::vector<Candidate>& buried) {
-        std::vector<Position> higher;
+    void move_out(const std::vector<Buried>& buried) {
+        std::vector<Candidate> higher;
         std::vector<Candidate> moved;
-        for (const Candidate& candidate : buried) {
+        Report& report = placement_.report;
+        for (const auto& [candidate, at] : buried) {
             const bool ours = in_sector(candidate.position);
-            const std::optional<Position> place = free_place(candidate.position);
+            const std::optional<Position> place = free_place(candidate, at.stand);
             if (!place) {
-                if (ours)
-                    ++report_.dropped_in_solid;
+                if (ours) {
+                    ++report.dropped_in_solid;
+                    placement_.dropped_in.push_back(at.thing);
+                }
                 continue;
             }
-            const auto near_place = [&](const Position& other) { return is_near(*place, other); };
-            const bool yields = std::ranges::any_of(higher, near_place);
-            higher.push_back(*place);
-            if (yields || near_kept(*place))
-                continue;
-            if (ours)
-                ++report_.moved_out;
             Candidate at_place = candidate;
             at_place.position = *place;
+            at_place.moved = true;
+            const auto takes_its_place = [&](const Candidate& other) {
+                return is_near(
+                    *place, other.position, std::min(candidate.min_distance_m, other.min_distance_m));
+            };
+            const bool yields = std::ranges::any_of(higher, takes_its_place);
+            higher.push_back(at_place);
+            if (yields || near_kept(*place, candidate.min_distance_m))
+                continue;
+            report.moved_out += ours ? 1 : 0;
             moved.push_back(at_place);
         }
         kept_.insert(kept_.end(), moved.begin(), moved.end());
@@ -168,34 +183,38 @@ class Placer {
         std::vector<Candidate> own;
         const auto is_ours = [&](const Candidate& candidate) { return in_sector(candidate.position); };
         std::ranges::copy_if(kept_, std::back_inserter(own), is_ours);
-        Thinned left = thin(own, settings_.min_distance_m, max_probes - manual_count);
-        report_.used_distance_m = left.used_distance_m;
-        report_.thinned = static_cast<std::uint32_t>(own.size() - left.probes.size());
+        Thinned left = thin(
+            own, max_probes - manual_count, [&](const Position& a, const Position& b) { return sees(a, b); });
+        Report& report = placement_.report;
+        report.used_distance_m = settings_.min_distance_m * left.growth;
+        report.thinned = static_cast<std::uint32_t>(own.size() - left.probes.size());
         return std::move(left.probes);
     }
 
     const Input& input_;
     const Surroundings& surroundings_;
     const Settings& settings_;
-    const std::int64_t min_squared_;
-    const std::vector<Position> manual_;  // of the whole map
-    std::vector<Candidate> kept_;         // by priority, the moved ones last
-    Report report_;
+    const std::vector<Manual> manual_;  // of the whole map
+    std::vector<Candidate> kept_;       // by priority, the moved ones last
+    Placement placement_;
 };
 
 }  // namespace
 
-glm::vec3 metres(const Position& position) {
-    return glm::vec3(position) * (1.0f / units_per_m);
-}
-
-float decision_margin_m(const Settings& settings) {
+float decision_margin_m(const Settings& settings, std::span<const SpacingVolume> spacings) {
     // A decision waits for those of higher classes, one step of at most the distance each: the ground's and
-    // the vegetation's classes, then the moved ones, which also went up to half the distance.
-    const std::uint32_t ground = lattice_stride(ground_lattice_m, settings.min_distance_m);
-    const std::uint32_t vegetation = lattice_stride(vegetation_lattice_m, settings.min_distance_m);
-    const std::uint32_t steps = ground * ground + vegetation * vegetation + 2;
-    return settings.min_distance_m * static_cast<float>(steps);
+    // the vegetation's classes of each distance, then the moved ones, which also went up to half the
+    // distance.
+    float margin_m = 0;
+    float most_m = 0;
+    for (const float distance_m : distances_kept(settings, spacings)) {
+        for (const Kind kind : {Kind::ground, Kind::vegetation}) {
+            const std::uint32_t stride = lattice_stride(lattice_side_m(kind, distance_m), distance_m);
+            margin_m += distance_m * static_cast<float>(stride * stride);
+        }
+        most_m = std::max(most_m, distance_m);
+    }
+    return margin_m + 2 * most_m;
 }
 
 tl::expected<Placement, std::string> place_probes(const Input& input,

@@ -1,19 +1,20 @@
 // Automatic placement of probes in one sector (s14-s17).
 //
-// Columns on the global 4 m lattice propose a probe above every up-facing surface; columns on the 8 m lattice
-// propose one on top of the vegetation's combined bounding boxes. Proposals closer than the minimal distance
-// are decided by a rule that needs no order of work: two sectors decide alike about their common border, each
-// by itself, because a decision depends only on proposals within `decision_margin_m`.
+// Columns on a global lattice propose a probe above every up-facing surface; columns on a lattice twice as
+// wide propose one on top of the vegetation's combined bounding boxes. A proposal yields to one of higher
+// priority that is nearer than the minimal distance and that it sees. That is decided by a rule that needs no
+// order of work: two sectors decide alike about their common border, each by itself, because a decision
+// depends only on proposals within `decision_margin_m`.
 #pragma once
 
 #include "placement/closed_volume.h"
-#include "placement/solid_test.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,13 +28,16 @@ inline constexpr std::int32_t units_per_m = 1024;
 inline constexpr std::int32_t sector_size_m = 64;
 inline constexpr std::size_t max_probes = 255;
 
-// Columns stand in the middles of these squares of the world.
-inline constexpr std::int32_t ground_lattice_m = 4;      // s15
-inline constexpr std::int32_t vegetation_lattice_m = 8;  // s16
+// Columns stand in the middles of squares of the world with this side: s15, s16. Where probes may stand
+// nearer than 4 m, the squares are as small as that, and twice for vegetation.
+inline constexpr float ground_lattice_m = 4;
+inline constexpr float vegetation_lattice_m = 8;
 
 using Position = glm::ivec3;  // world, in units of 2^-10 m
 
-[[nodiscard]] glm::vec3 metres(const Position& position);
+[[nodiscard]] inline glm::vec3 metres(const Position& position) {
+    return glm::vec3(position) * (1.0f / units_per_m);
+}
 
 struct Settings {
     float min_distance_m = 6;  // between automatic probes, 1 to 16: beyond, the margin below grows past 500 m
@@ -43,10 +47,35 @@ struct ColumnHit {
     float z_m = 0;
     bool up_facing = false;    // seen from above it is a front
     bool down_facing = false;  // seen from below it is a front
+    bool wound_up = false;     // its corners are counter-clockwise seen from above, whatever its sides are
+    bool closed = false;       // it belongs to a surface that bounds a volume
 };
 
 struct Box {
     glm::vec3 low, high;  // world, metres
+};
+
+// An object of the scene, by a number of the scene's own.
+using Thing = std::uint32_t;
+
+// A ray from a point that is asked for what it meets first.
+struct Look {
+    glm::vec3 direction{};  // unit
+    float far_m = 0;
+};
+
+// Of several looks. The corners' order tells fronts from backs, whatever the material's sides are.
+struct Met {
+    std::size_t backs = 0;
+    std::size_t misses = 0;
+    std::optional<Thing> behind;  // whose back most of them met
+};
+
+// A surface that a straight way crosses.
+struct Side {
+    float distance_m = 0;
+    bool front = false;  // it comes from the front
+    bool sheet = false;  // it has two fronts and bounds no volume
 };
 
 // The scene, as functions. Each must be a pure function of its arguments; they are called from one thread.
@@ -54,10 +83,21 @@ struct Surroundings {
     // All crossings of the vertical line at (x, y) with static objects, from the top down; replaces the
     // vector.
     std::function<void(glm::vec2, std::vector<ColumnHit>&)> column;
-    // Of rays from a point, how many meet the back of a one-sided surface first.
-    std::function<std::size_t(const glm::vec3& origin, std::span<const glm::vec3> directions)> backs_met;
-    // Whether the straight line between two points is free.
-    std::function<bool(const glm::vec3&, const glm::vec3&)> sees;
+    // The same, and all that bounds volumes.
+    std::function<void(glm::vec2, std::vector<ColumnHit>&)> column_of_spaces;
+    // What closed surfaces bound and the point is inside of, whatever their sides and role.
+    std::function<std::optional<Thing>(const glm::vec3&)> closed_around;
+    // One look after the other, until so many have missed.
+    std::function<Met(const glm::vec3& origin, std::span<const Look> looks, std::size_t most_misses)>
+        first_met;
+    // A static object with a surface nearer than that.
+    std::function<std::optional<Thing>(const glm::vec3&, float within_m)> wall_within;
+    // Static surfaces, and those that bound volumes, on the straight way; in any order.
+    std::function<std::vector<Side>(const glm::vec3& from, const glm::vec3& to)> sides;
+    // Whether something static and opaque stands between two points; leaves never do.
+    std::function<bool(const glm::vec3&, const glm::vec3&)> separated;
+    // Whether anything stands between two points.
+    std::function<bool(const glm::vec3&, const glm::vec3&)> hidden;
 };
 
 enum class Kind : std::uint8_t { ground, vegetation, manual };
@@ -65,12 +105,35 @@ enum class Kind : std::uint8_t { ground, vegetation, manual };
 struct PlacedProbe {
     Position position;
     Kind kind = Kind::ground;
+    bool moved = false;  // out of a solid
+};
+
+// Where a point stands.
+enum class Stand : std::uint8_t {
+    free,
+    in_wall,   // on a static surface: half of its light is that of the other side
+    in_solid,  // inside what closed surfaces bound
+    behind,    // behind surfaces that are not closed, as under the ground
+};
+
+// A point that was tested for a solid.
+struct SolidTest {
+    Position position;
+    std::uint8_t to_flip = 0;  // rays that would have to end otherwise for the answer to change
+    bool operator==(const SolidTest&) const = default;
+};
+
+// A hand-placed probe that does not stand free. It stays.
+struct BuriedManual {
+    Position position;
+    Stand stand = Stand::free;
+    Thing thing = 0;  // in or behind which it stands
 };
 
 struct Report {
     std::uint32_t candidates = 0;         // proposals inside the sector
     std::uint32_t moved_out = 0;          // probes moved out of a solid
-    std::uint32_t dropped_in_solid = 0;   // no free place within half the spacing
+    std::uint32_t dropped_in_solid = 0;   // no free place within half the distance
     std::uint32_t removed_by_volume = 0;  // inside a no_probes volume
     std::uint32_t thinned = 0;            // given up to stay within 255
     float used_distance_m = 0;            // the minimal distance in the end
@@ -79,17 +142,33 @@ struct Report {
 struct Placement {
     std::vector<PlacedProbe> probes;  // manual ones first, then by (y, x, z)
     Report report;
+    std::vector<Thing> dropped_in;  // of each proposal of the sector that was dropped, what it stood in
+    std::vector<BuriedManual> buried_manual;  // of the sector
+    std::vector<SolidTest> solid_tests;       // on which all this rests
+};
+
+// A probe that interiors name serves these alone: it takes no probe's place outside of them.
+struct ManualProbe {
+    glm::dvec3 position{};
+    std::vector<const ClosedVolume*> interiors;
+};
+
+// Inside of it automatic probes keep another distance.
+struct SpacingVolume {
+    ClosedVolume volume;
+    float min_distance_m = 0;  // 1 to 16
 };
 
 struct Input {
     std::int32_t i = 0, j = 0;                // the sector
     std::span<const Box> vegetation;          // all that overlap the sector grown by decision_margin_m
-    std::span<const glm::dvec3> manual;       // all manual probes of the map
+    std::span<const ManualProbe> manual;      // all manual probes of the map
     std::span<const ClosedVolume> no_probes;  // all such volumes of the map
+    std::span<const SpacingVolume> spacings;  // likewise; where they overlap the smallest distance counts
 };
 
 // How far from the sector's border the surroundings are asked: columns, vegetation, rays' origins.
-[[nodiscard]] float decision_margin_m(const Settings& settings);
+[[nodiscard]] float decision_margin_m(const Settings& settings, std::span<const SpacingVolume> spacings);
 
 // Fails with a sentence when the sector holds more than 255 manual probes.
 [[nodiscard]] tl::expected<Placement, std::string> place_probes(const Input& input,

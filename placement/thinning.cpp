@@ -3,36 +3,67 @@
 #include "placement/units.h"
 
 #include <algorithm>
+#include <map>
 
 namespace drtv::placement {
 namespace {
 
-// Those that have no earlier one nearer than the distance.
-std::vector<PlacedProbe> spaced(std::span<const Candidate> own, float distance_m) {
-    const std::int64_t min_squared = squared_units(distance_m);
-    std::vector<PlacedProbe> probes;
-    for (const Candidate& candidate : own) {
-        const auto is_near = [&](const PlacedProbe& other) {
-            return squared_distance(candidate.position, other.position) < min_squared;
-        };
-        if (std::ranges::none_of(probes, is_near))
-            probes.push_back({candidate.position, candidate.kind});
+class Thinner {
+  public:
+    Thinner(std::span<const Candidate> own, const Sees& sees) : own_(own), sees_(sees) {}
+
+    // Those that have no earlier one nearer than the distance.
+    std::vector<std::size_t> spaced(float growth, bool by_sight) {
+        std::vector<std::size_t> kept;
+        for (std::size_t n = 0; n < own_.size(); ++n) {
+            const auto takes_its_place = [&](std::size_t other) {
+                return are_near(n, other, growth) && (!by_sight || see(n, other));
+            };
+            if (std::ranges::none_of(kept, takes_its_place))
+                kept.push_back(n);
+        }
+        return kept;
     }
-    return probes;
-}
+
+  private:
+    [[nodiscard]] bool are_near(std::size_t a, std::size_t b, float growth) const {
+        const float distance_m = std::min(own_[a].min_distance_m, own_[b].min_distance_m);
+        return squared_distance(own_[a].position, own_[b].position) < squared_units(distance_m * growth);
+    }
+
+    [[nodiscard]] bool see(std::size_t a, std::size_t b) {
+        const auto [known, added] = seen_.try_emplace({a, b}, false);
+        if (added)
+            known->second = sees_(own_[a].position, own_[b].position);
+        return known->second;
+    }
+
+    const std::span<const Candidate> own_;
+    const Sees& sees_;
+    std::map<std::pair<std::size_t, std::size_t>, bool> seen_;
+};
 
 }  // namespace
 
-Thinned thin(std::span<const Candidate> own, float min_distance_m, std::size_t max_count) {
+Thinned thin(std::span<const Candidate> own, std::size_t max_count, const Sees& sees) {
+    constexpr float step = 1.125f;
+    constexpr float most_growth = 16;  // then what hides from each other is too much for a file
     Thinned thinned;
-    thinned.used_distance_m = min_distance_m;
     if (max_count == 0)
         return thinned;
-    thinned.probes = spaced(own, thinned.used_distance_m);
-    while (thinned.probes.size() > max_count) {
-        thinned.used_distance_m *= 1.125f;
-        thinned.probes = spaced(own, thinned.used_distance_m);
+    Thinner thinner(own, sees);
+    bool by_sight = true;
+    std::vector<std::size_t> kept = thinner.spaced(1, by_sight);
+    while (kept.size() > max_count) {
+        thinned.growth *= step;
+        if (by_sight && thinned.growth > most_growth) {
+            by_sight = false;
+            thinned.growth = 1;
+        }
+        kept = thinner.spaced(thinned.growth, by_sight);
     }
+    for (const std::size_t n : kept)
+        thinned.probes.push_back({own[n].position, own[n].kind, own[n].moved});
     return thinned;
 }
 

@@ -4,6 +4,7 @@
 #include "placement/candidates.h"
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -11,13 +12,15 @@ namespace drtv::placement {
 
 struct Thinned {
     std::vector<PlacedProbe> probes;
-    float used_distance_m = 0;  // the minimal distance between them in the end
+    float growth = 1;  // of the minimal distances between them
 };
 
-// Of a sector's own probes, by priority, those that stay when the minimal distance grows from
-// `min_distance_m` by eighths until at most `max_count` fit. Neighbours do not see that, so a border may lose
-// probes by it but never gain one too near. One probe is kept at any distance, so that growing is no way out
-// for a sector that manual ones fill: with `max_count` 0, all are given up.
-[[nodiscard]] Thinned thin(std::span<const Candidate> own, float min_distance_m, std::size_t max_count);
+// Of a sector's own probes, by priority, those that stay when the minimal distances grow by eighths until at
+// most `max_count` fit. Neighbours do not see that, so a border may lose probes by it but never gain one too
+// near. As long as that helps, a probe takes the place of those alone that it sees. One probe is kept at any
+// distance, so that growing is no way out for a sector that manual ones fill: with `max_count` 0, all are
+// given up.
+using Sees = std::function<bool(const Position&, const Position&)>;
+[[nodiscard]] Thinned thin(std::span<const Candidate> own, std::size_t max_count, const Sees& sees);
 
 }  // namespace drtv::placement

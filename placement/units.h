@@ -13,6 +13,10 @@ namespace drtv::placement {
     return static_cast<std::int32_t>(std::lround(m * units_per_m));
 }
 
+[[nodiscard]] inline Position to_position(const glm::dvec3& point) {
+    return {to_units(point.x), to_units(point.y), to_units(point.z)};
+}
+
 [[nodiscard]] inline std::int64_t squared_units(float distance_m) {
     const double units = static_cast<double>(distance_m) * units_per_m;
     const std::int64_t whole = std::lround(units);

@@ -16,7 +16,7 @@ ARROWS = {
     "format/tool": {"format", "format/runtime"},
     "placement": set(),
     "bakerd/map": set(),
-    "bakerd/trace": {"bakerd/map"},
+    "bakerd/trace": {"bakerd/map", "placement"},
     "bakerd/bake": {"bakerd/trace", "bakerd/map", "placement", "format"},
     "bakerd/reuse": {"bakerd/bake", "bakerd/trace", "bakerd/map", "placement", "format"},
     "bakerd/store": {"bakerd/map"},

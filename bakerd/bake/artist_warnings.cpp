@@ -2,11 +2,13 @@
 
 #include "bakerd/bake/lights.h"
 #include "bakerd/bake/sampling.h"
+#include "placement/units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -16,10 +18,6 @@ namespace {
 double back_hit_share(const Statistics& statistics) {
     const auto rays = std::max<std::uint64_t>(statistics.rays, 1);
     return static_cast<double>(statistics.back_hits) / static_cast<double>(rays);
-}
-
-std::string shown_name(const std::string& name, const char* kind) {
-    return name.empty() ? fmt::format("{} without a name", kind) : fmt::format("'{}'", name);
 }
 
 std::string object_name(const map::Map& map, std::uint32_t object) {
@@ -67,7 +65,24 @@ std::optional<std::uint32_t> shell_of(const PointLight& lamp, float most_m, cons
     return shell;
 }
 
+const char* how_it_stands(placement::Stand stand) {
+    switch (stand) {
+        case placement::Stand::in_wall:
+            return "in a wall:";
+        case placement::Stand::behind:
+            return "under the ground, or behind the faces of";
+        case placement::Stand::free:
+        case placement::Stand::in_solid:
+            return "inside";
+    }
+    return "inside";
+}
+
 }  // namespace
+
+std::string shown_name(const std::string& name, const char* kind) {
+    return name.empty() ? fmt::format("{} without a name", kind) : fmt::format("'{}'", name);
+}
 
 bool has_many_back_hits(const Statistics& statistics) {
     constexpr double max_share = 0.05;
@@ -148,6 +163,49 @@ void warn_of_enclosed_lamps(const trace::Scene& scene,
                 light.position.z,
                 object_name(scene.map(), *shell)));
     }
+}
+
+void warn_of_buried_probe(const map::Map& map,
+                          const placement::BuriedManual& buried,
+                          std::vector<std::string>& warnings) {
+    for (const map::ManualProbe& probe : map.probes) {
+        if (placement::to_position(probe.position) != buried.position)
+            continue;
+        warnings.push_back(fmt::format("the probe {} at ({:.2f}, {:.2f}, {:.2f}) stands {} {}",
+                                       shown_name(probe.name, "one"),
+                                       probe.position.x,
+                                       probe.position.y,
+                                       probe.position.z,
+                                       how_it_stands(buried.stand),
+                                       object_name(map, buried.thing)));
+    }
+}
+
+void warn_of_empty_places(const map::Map& map,
+                          map::SectorCoordinate sector,
+                          std::span<const placement::Thing> dropped_in,
+                          std::vector<std::string>& warnings) {
+    if (dropped_in.empty())
+        return;
+    std::map<std::string, std::size_t> by_name;
+    for (const placement::Thing thing : dropped_in)
+        ++by_name[object_name(map, thing)];
+    std::vector<std::pair<std::string, std::size_t>> most(by_name.begin(), by_name.end());
+    std::ranges::stable_sort(most, std::greater(), [](const auto& entry) { return entry.second; });
+    constexpr std::size_t most_named = 3;
+    std::string names;
+    for (std::size_t n = 0; n < most.size() && n < most_named; ++n)
+        names += fmt::format("{}{} ({})", n == 0 ? "" : ", ", most[n].first, most[n].second);
+    if (most.size() > most_named)
+        names += fmt::format(" and {} more", most.size() - most_named);
+    warnings.push_back(
+        fmt::format("sector ({}, {}): {} {} in solids and {} empty: {}",
+                    sector.i,
+                    sector.j,
+                    dropped_in.size(),
+                    dropped_in.size() == 1 ? "place for a probe lies" : "places for probes lie",
+                    dropped_in.size() == 1 ? "stays" : "stay",
+                    names));
 }
 
 }  // namespace drtv::bake

@@ -24,12 +24,6 @@ std::int64_t units(double metres) {
     return std::llround(metres * position_units_per_m);
 }
 
-Position position_of(const glm::dvec3& point) {
-    return {static_cast<std::int32_t>(units(point.x)),
-            static_cast<std::int32_t>(units(point.y)),
-            static_cast<std::int32_t>(units(point.z))};
-}
-
 map::SectorCoordinate sector_of(const Position& position) {
     return {placement::sector_of(position.x), placement::sector_of(position.y)};
 }
@@ -55,7 +49,7 @@ const map::ManualProbe* probe_of(const map::Map& map,
 // mesh stays closed.
 tl::expected<Interior, std::string> store_mesh(const std::string& name,
                                                const placement::ClosedVolume& closed) {
-    const std::vector<glm::dvec3> vertices = closed.vertices();
+    const std::vector<glm::dvec3>& vertices = closed.vertices();
     std::array<std::int64_t, 3> low{};
     std::array<std::int64_t, 3> high{};
     for (glm::length_t axis = 0; axis < 3; ++axis) {
@@ -121,12 +115,19 @@ tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
         high = glm::max(high, position);
     }
     const glm::dvec3 middle = (low + high) / 2.0;
-    InteriorVolume interior{volume.name, std::nullopt, {}, std::move(*stored)};
+    InteriorVolume interior{volume.name, std::nullopt, {}, closed, std::move(*stored)};
     if (const map::ManualProbe* probe = probe_of(map, volume, closed, middle)) {
-        interior.probe = position_of(probe->position);
+        interior.probe = placement::to_position(probe->position);
         interior.sector = sector_of(*interior.probe);
     }
     return interior;
+}
+
+std::size_t probe_at(const placement::Position& place, std::span<const placement::Position> positions) {
+    const auto squared = [&](const placement::Position& position) {
+        return placement::squared_distance(position, place);
+    };
+    return static_cast<std::size_t>(std::ranges::min_element(positions, {}, squared) - positions.begin());
 }
 
 tl::expected<void, std::string> store_interiors(std::span<const InteriorVolume> interiors,
@@ -137,14 +138,8 @@ tl::expected<void, std::string> store_interiors(std::span<const InteriorVolume> 
     for (const InteriorVolume& interior : interiors) {
         if (interior.sector != map::SectorCoordinate{sector.i, sector.j} || !interior.probe)
             continue;
-        // Manual probes are never given up, but heights are rounded.
-        const auto squared = [&](const placement::Position& position) {
-            const glm::dvec3 offset(position - *interior.probe);
-            return glm::dot(offset, offset);
-        };
-        const auto probe = std::ranges::min_element(positions, {}, squared) - positions.begin();
         sector.interiors.push_back(interior.stored);
-        sector.interiors.back().probe = static_cast<std::uint8_t>(probe);
+        sector.interiors.back().probe = static_cast<std::uint8_t>(probe_at(*interior.probe, positions));
         vertices += interior.stored.vertices.size();
         triangles += interior.stored.triangles.size();
     }

@@ -22,7 +22,8 @@ struct InteriorVolume {
     std::optional<placement::Position>
         probe;                     // where it stands; nothing where the volume names none and none is inside
     map::SectorCoordinate sector;  // of its probe
-    Interior stored;               // all but the probe's index
+    placement::ClosedVolume volume;  // the mesh
+    Interior stored;                 // all but the probe's index
 };
 
 // The probe is the one that the volume names, else of those inside the one nearest to the middle of its
@@ -32,6 +33,11 @@ struct InteriorVolume {
 [[nodiscard]] tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
                                                                       const map::Volume& volume,
                                                                       const placement::ClosedVolume& closed);
+
+// Of the probes as they are stored, the one that stood at that place. Manual ones are never given up, but
+// heights are rounded. REQUIRES: there is one.
+[[nodiscard]] std::size_t probe_at(const placement::Position& place,
+                                   std::span<const placement::Position> positions);
 
 // Puts those whose probe stands in the sector into it; `positions` are those of its probes. Fails with a
 // sentence when they are too many for one file.

@@ -1,9 +1,12 @@
 #include "bakerd/bake/placed_sector.h"
 
+#include "bakerd/bake/artist_warnings.h"
+#include "bakerd/bake/placement_scene.h"
+
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace drtv::bake {
 namespace {
@@ -57,78 +60,65 @@ tl::expected<void, std::string> store_positions(const std::vector<placement::Pla
     return {};
 }
 
+float most_distance_m(const PlacementTags& tags, const Settings& settings) {
+    float most_m = settings.min_distance_m;
+    for (const placement::SpacingVolume& spacing : tags.spacings)
+        most_m = std::max(most_m, spacing.min_distance_m);
+    return most_m;
+}
+
 }  // namespace
 
-float placement_margin_m(const Settings& settings) {
-    const float margin_m = placement::decision_margin_m({settings.min_distance_m});
+float placement_margin_m(const PlacementTags& tags, const Settings& settings) {
+    const float margin_m = placement::decision_margin_m({settings.min_distance_m}, tags.spacings);
     // The neighbours' probes are sources of local transfer.
     return settings.local_transfer ? margin_m + static_cast<float>(map::sector_size_m) : margin_m;
 }
 
+float placement_reach_m(const PlacementTags& tags, const Settings& settings) {
+    // As far as candidates stand, may be moved, and look for others at their distance.
+    return placement_margin_m(tags, settings) + 2 * most_distance_m(tags, settings);
+}
+
 // Placement looks over the border, and from there, moved by some steps, as far as the reach goes.
-float scene_distance_m(const Settings& settings) {
-    return settings.reach_m + placement_margin_m(settings) + settings.min_distance_m;
+float scene_distance_m(const PlacementTags& tags, const Settings& settings) {
+    return settings.reach_m + placement_reach_m(tags, settings);
 }
 
-placement::Surroundings surroundings_of(const trace::Scene& scene,
-                                        float reach_m,
-                                        std::vector<SolidTest>* solid_tests) {
-    placement::Surroundings surroundings;
-    surroundings.column = [&scene](glm::vec2 at, std::vector<placement::ColumnHit>& hits) {
-        std::vector<trace::ColumnHit> found;
-        scene.column(at, found);
-        hits.clear();
-        for (const trace::ColumnHit& hit : found)
-            hits.push_back({hit.z_m, hit.up_facing, hit.down_facing});
-    };
-    surroundings.backs_met = [&scene, reach_m, solid_tests](const glm::vec3& origin,
-                                                            std::span<const glm::vec3> directions) {
-        const auto meets_back = [&](const glm::vec3& direction) {
-            const auto hit = scene.closest({origin, direction, reach_m});
-            return hit && !hit->front && scene.surface(*hit, 0).absorbs;
-        };
-        const auto backs = static_cast<std::size_t>(std::ranges::count_if(directions, meets_back));
-        if (solid_tests != nullptr)
-            solid_tests->push_back(
-                {placement::Position(glm::round(origin * static_cast<float>(placement::units_per_m))),
-                 static_cast<std::uint8_t>(placement::backs_to_flip(backs))});
-        return backs;
-    };
-    surroundings.sees = [&scene](const glm::vec3& from, const glm::vec3& to) {
-        const float distance_m = glm::length(to - from);
-        return distance_m <= 0 || !scene.occluded({from, (to - from) / distance_m, distance_m});
-    };
-    return surroundings;
-}
-
-tl::expected<PlacedSector, std::string> place_sector(const PlacementVolumes& volumes,
+tl::expected<PlacedSector, std::string> place_sector(const PlacementTags& tags,
                                                      const trace::Scene& scene,
                                                      map::SectorCoordinate coordinate,
                                                      const Settings& settings) {
     const placement::Settings how{settings.min_distance_m};
     const glm::vec2 corner = glm::vec2(coordinate.i, coordinate.j) * static_cast<float>(map::sector_size_m);
-    const float margin_m = placement::decision_margin_m(how);
+    const float margin_m = placement::decision_margin_m(how, tags.spacings);
     std::vector<placement::Box> vegetation;
     for (const map::Bounds& bounds : scene.vegetation_bounds(
              {corner - margin_m, corner + static_cast<float>(map::sector_size_m) + margin_m}))
         vegetation.push_back({bounds.low, bounds.high});
-    PlacedSector placed;
-    const auto placement = placement::place_probes(
-        {coordinate.i, coordinate.j, vegetation, volumes.manual_probes, volumes.no_probes},
-        surroundings_of(scene, settings.reach_m, &placed.solid_tests),
+    auto placement = placement::place_probes(
+        {coordinate.i, coordinate.j, vegetation, tags.manual_probes, tags.no_probes, tags.spacings},
+        surroundings_of(scene, settings.reach_m),
         how);
     if (!placement)
         return tl::unexpected(placement.error());
 
+    PlacedSector placed;
     placed.sector.i = coordinate.i;
     placed.sector.j = coordinate.j;
     placed.report = placement->report;
+    placed.solid_tests = std::move(placement->solid_tests);
     if (auto stored = store_positions(placement->probes, placed.sector); !stored)
         return tl::unexpected(stored.error());
     for (const Probe& probe : placed.sector.probes) {
         const auto units = position_units(placed.sector, probe);
         placed.positions.emplace_back(units[0], units[1], units[2]);
     }
+    for (const placement::PlacedProbe& probe : placement->probes)
+        placed.moved.push_back(probe.moved);
+    for (const placement::BuriedManual& buried : placement->buried_manual)
+        warn_of_buried_probe(scene.map(), buried, placed.warnings);
+    warn_of_empty_places(scene.map(), coordinate, placement->dropped_in, placed.warnings);
     return placed;
 }
 

@@ -5,6 +5,7 @@
 #include "bakerd/bake/interiors.h"
 #include "bakerd/bake/local_encoding.h"
 #include "bakerd/bake/local_transfer.h"
+#include "bakerd/bake/placement_scene.h"
 #include "placement/grid.h"
 
 #include <fmt/format.h>
@@ -31,8 +32,8 @@ void store_report(const placement::Report& report, Statistics& statistics) {
 }
 
 // By place; one of each. Neighbours test the same points.
-void sort_tests(std::vector<SolidTest>& tests) {
-    std::ranges::sort(tests, {}, [](const SolidTest& test) {
+void sort_tests(std::vector<placement::SolidTest>& tests) {
+    std::ranges::sort(tests, {}, [](const placement::SolidTest& test) {
         return std::tuple(test.position.y, test.position.x, test.position.z, test.to_flip);
     });
     const auto again = std::ranges::unique(tests);
@@ -80,6 +81,7 @@ class SectorBake {
         baked_.sector = placed.sector;
         baked_.positions = placed.positions;
         baked_.solid_tests = placed.solid_tests;
+        baked_.placement_warnings = baked_.warnings = placed.warnings;
         store_report(placed.report, baked_.sector.statistics);
         baked_.sector.bake = {settings_.rays,
                               settings_.bounces,
@@ -113,12 +115,21 @@ class SectorBake {
             return;
         }
         const trace::FloatMode float_mode;
-        const placement::ProbeGrid grid =
-            placement::build_grid(coordinate_.i,
-                                  coordinate_.j,
-                                  baked_.positions,
-                                  surroundings_of(*around_.scene, settings_.reach_m));
+        const placement::ProbeGrid grid = placement::build_grid(
+            coordinate_.i, coordinate_.j, grid_probes(), surroundings_of(*around_.scene, settings_.reach_m));
         baked_.sector.grid = {grid.z_origin_units, grid.cell_height_units, grid.cells};
+    }
+
+    // With the interiors that name them.
+    [[nodiscard]] std::vector<placement::GridProbe> grid_probes() const {
+        std::vector<placement::GridProbe> probes;
+        for (const placement::Position& position : baked_.positions)
+            probes.push_back({position, {}});
+        for (const InteriorVolume& interior : world_.interiors()) {
+            if (interior.probe && interior.sector == coordinate_)
+                probes[probe_at(*interior.probe, baked_.positions)].interiors.push_back(&interior.volume);
+        }
+        return probes;
     }
 
     void warn_of_all() {
@@ -131,17 +142,17 @@ class SectorBake {
     // Local transfer from the sector's probes and its neighbours'.
     void bake_local(const PlacedSector& placed) {
         std::vector<std::shared_ptr<const Placed>> around;
-        std::vector<const PlacedSector*> neighbours;
-        for (const map::SectorCoordinate& coordinate : neighbours_with_ground()) {
+        std::vector<const PlacedSector*> placed_around;
+        for (const map::SectorCoordinate& coordinate : neighbours()) {
             around.push_back(world_.placed(coordinate, settings_, *around_.scene));
             if (!*around.back())
                 continue;  // what cannot be placed has no probes
             const PlacedSector& neighbour = **around.back();
-            neighbours.push_back(&neighbour);
+            placed_around.push_back(&neighbour);
             baked_.solid_tests.insert(
                 baked_.solid_tests.end(), neighbour.solid_tests.begin(), neighbour.solid_tests.end());
         }
-        const LocalSources sources = local_sources(placed, neighbours, settings_.reach_m);
+        const LocalSources sources = local_sources(placed, placed_around, settings_.reach_m);
         const std::size_t receiver_count = placed.positions.size();
         const auto samples =
             world_.samples(settings_.local_rays, local_sample_dimensions(settings_.local_bounces));
@@ -155,12 +166,12 @@ class SectorBake {
         sector.convergence->local_transfer_rays = light.rays;
     }
 
-    [[nodiscard]] std::vector<map::SectorCoordinate> neighbours_with_ground() const {
+    [[nodiscard]] std::vector<map::SectorCoordinate> neighbours() const {
         std::vector<map::SectorCoordinate> found;
         for (std::int32_t dj = -1; dj <= 1; ++dj) {
             for (std::int32_t di = -1; di <= 1; ++di) {
                 const map::SectorCoordinate coordinate{coordinate_.i + di, coordinate_.j + dj};
-                if (coordinate != coordinate_ && world_.has_ground(coordinate))
+                if (coordinate != coordinate_ && world_.has_sector(coordinate))
                     found.push_back(coordinate);
             }
         }

@@ -29,7 +29,7 @@ struct ByPlace {
 // What of the sector is known before it is baked: it is stored as it is.
 struct Given {
     std::optional<PlacedSector> placement;
-    std::optional<Grid> grid;                                   // REQUIRES: the placement is given
+    std::optional<Grid> grid;                                   // of the same placement
     std::map<placement::Position, BakedProbe, ByPlace> probes;  // those that stand elsewhere are not used
 };
 
@@ -40,7 +40,8 @@ struct BakedSector {
     std::vector<placement::Position> positions;
     std::vector<ProbeCounts> counts;
     // On which its placement rests, and with local transfer its neighbours'; by place, one of each.
-    std::vector<SolidTest> solid_tests;
+    std::vector<placement::SolidTest> solid_tests;
+    std::vector<std::string> placement_warnings;  // of `warnings`, those that follow from the placement
 };
 
 // Runs on the calling thread's TBB arena. Fails with a sentence (too many manual probes; too high a sector).

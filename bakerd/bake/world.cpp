@@ -2,6 +2,7 @@
 
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/tile.h"
+#include "placement/units.h"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
@@ -44,38 +45,52 @@ tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<co
             most_emissive));
     }
     std::shared_ptr<World> world(new World(std::move(device), std::move(map), std::move(shelf)));
-    auto sectors = map::sectors_with_ground(world->map());
+    auto sectors = map::sectors_of(world->map());
     if (!sectors)
         return tl::unexpected(sectors.error());
     world->sectors_ = std::move(*sectors);
-    for (const map::Volume& volume : world->map().volumes) {
+    if (auto opened = world->open_volumes(); !opened)
+        return tl::unexpected(opened.error());
+    world->tag_probes();
+    return world;
+}
+
+tl::expected<void, std::string> World::open_volumes() {
+    for (const map::Volume& volume : map().volumes) {
         auto closed = placement::ClosedVolume::make(volume.name, volume.positions, volume.triangles);
         if (!closed)
             return tl::unexpected(closed.error());
-        if (volume.kind == map::VolumeKind::no_probes) {
-            world->no_probes_.push_back(std::move(*closed));
-            continue;
+        switch (volume.kind) {
+            case map::VolumeKind::no_probes:
+                tags_.no_probes.push_back(std::move(*closed));
+                break;
+            case map::VolumeKind::spacing:
+                tags_.spacings.push_back({std::move(*closed), volume.spacing_m});
+                break;
+            case map::VolumeKind::interior: {
+                auto interior = make_interior(map(), volume, *closed);
+                if (!interior)
+                    return tl::unexpected(interior.error());
+                if (!interior->probe)
+                    warnings_.push_back(fmt::format(
+                        "the interior '{}' names no probe and no probe node is inside it: no file holds it",
+                        interior->name));
+                interiors_.push_back(std::move(*interior));
+            }
         }
-        auto interior = make_interior(world->map(), volume, *closed);
-        if (!interior)
-            return tl::unexpected(interior.error());
-        if (!interior->probe) {
-            world->warnings_.push_back(fmt::format(
-                "the interior '{}' names no probe and no probe node is inside it: no file holds it",
-                interior->name));
-        } else if (!world->has_ground(interior->sector)) {
-            world->warnings_.push_back(
-                fmt::format("the probe of the interior '{}' stands in sector ({}, {}), which has no ground "
-                            "and is not baked: no file holds the interior",
-                            interior->name,
-                            interior->sector.i,
-                            interior->sector.j));
-        }
-        world->interiors_.push_back(std::move(*interior));
     }
-    for (const map::ManualProbe& probe : world->map().probes)
-        world->manual_probes_.push_back(probe.position);
-    return world;
+    return {};
+}
+
+void World::tag_probes() {
+    for (const map::ManualProbe& probe : map().probes) {
+        placement::ManualProbe tagged{probe.position, {}};
+        for (const InteriorVolume& interior : interiors_) {
+            if (interior.probe == placement::to_position(probe.position))
+                tagged.interiors.push_back(&interior.volume);
+        }
+        tags_.manual_probes.push_back(std::move(tagged));
+    }
 }
 
 std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate sector, float distance_m) {
@@ -91,7 +106,7 @@ std::shared_ptr<const trace::Scene> World::scene_for(map::SectorCoordinate secto
     });
 }
 
-bool World::has_ground(map::SectorCoordinate sector) const {
+bool World::has_sector(map::SectorCoordinate sector) const {
     return std::ranges::binary_search(
         sectors_, std::pair(sector.j, sector.i), {}, [](const map::SectorCoordinate& s) {
             return std::pair(s.j, s.i);
@@ -101,13 +116,12 @@ bool World::has_ground(map::SectorCoordinate sector) const {
 std::shared_ptr<const Placed> World::placed(map::SectorCoordinate sector,
                                             const Settings& settings,
                                             const trace::Scene& scene) {
-    return placements_.get({sector, settings.reach_m, settings.min_distance_m}, [&] {
-        return place_sector({manual_probes_, no_probes_}, scene, sector, settings);
-    });
+    return placements_.get({sector, settings.reach_m, settings.min_distance_m},
+                           [&] { return place_sector(tags_, scene, sector, settings); });
 }
 
 Surroundings World::surroundings(map::SectorCoordinate sector, const Settings& settings) {
-    return {scene_for(sector, scene_distance_m(settings)),
+    return {scene_for(sector, scene_distance_m(tags_, settings)),
             samples(settings.rays, sample_dimensions(settings.bounces, !lights_.empty()))};
 }
 

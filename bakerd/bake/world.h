@@ -45,8 +45,12 @@ class World {
     [[nodiscard]] const std::vector<InteriorVolume>& interiors() const { return interiors_; }
     // Of interiors that no file will hold; one sentence each.
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-    [[nodiscard]] const std::vector<map::SectorCoordinate>& sectors_with_ground() const { return sectors_; }
-    [[nodiscard]] bool has_ground(map::SectorCoordinate sector) const;
+    [[nodiscard]] const PlacementTags& placement_tags() const { return tags_; }
+    [[nodiscard]] const std::vector<map::SectorCoordinate>& sectors() const { return sectors_; }
+    [[nodiscard]] bool has_sector(map::SectorCoordinate sector) const;
+
+    // Whether a part of the mesh is closed (trace::ClosedParts).
+    [[nodiscard]] bool bounds_volume(std::uint32_t mesh) { return !geometry_.closed_parts_of(mesh)->empty(); }
 
     // All objects within a distance of the sector, and some more: the scene is shared by the 8 x 8 sectors of
     // its tile, so that neighbours do not build it again. What it holds beyond the distance changes no answer
@@ -81,6 +85,9 @@ class World {
         std::uint32_t dimensions;
         bool operator==(const SampleKey&) const = default;
     };
+    [[nodiscard]] tl::expected<void, std::string> open_volumes();
+    void tag_probes();  // with the interiors that name them
+
     World(std::shared_ptr<const trace::Device> device,
           const std::shared_ptr<const map::Map>& map,
           std::shared_ptr<trace::MeshShelf> shelf);
@@ -88,11 +95,10 @@ class World {
     trace::MapGeometry geometry_;
     const StaticLights lights_;
     const float most_scattered_;
-    std::vector<map::SectorCoordinate> sectors_;  // with ground, sorted by (j, i)
-    std::vector<placement::ClosedVolume> no_probes_;
+    std::vector<map::SectorCoordinate> sectors_;  // sorted by (j, i)
     std::vector<InteriorVolume> interiors_;
+    PlacementTags tags_;  // refers to the interiors
     std::vector<std::string> warnings_;
-    std::vector<glm::dvec3> manual_probes_;
 
     Recent<SceneKey, std::shared_ptr<const trace::Scene>> scenes_;
     Recent<PlacementKey, Placed> placements_;

@@ -110,6 +110,7 @@ Digest digest_volume(const Volume& volume) {
     hasher.add(volume.kind);
     hasher.add_sized(volume.positions);
     hasher.add_sized(volume.triangles);
+    hasher.add(volume.spacing_m);
     return hasher.finish();
 }
 

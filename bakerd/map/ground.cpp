@@ -48,6 +48,13 @@ SectorCoordinate sector_of(double x_m, double y_m) {
     return {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)};
 }
 
+// As it is placed, in whole units.
+SectorCoordinate sector_holding(const ManualProbe& probe) {
+    constexpr double units_per_m = 1024;
+    const auto rounded = [](double m) { return std::round(m * units_per_m) / units_per_m; };
+    return sector_of(rounded(probe.position.x), rounded(probe.position.y));
+}
+
 std::size_t covered(SectorCoordinate first, SectorCoordinate last) {
     const auto columns = static_cast<std::size_t>(last.i - first.i + 1);
     const auto rows = static_cast<std::size_t>(last.j - first.j + 1);
@@ -72,6 +79,14 @@ struct Span {
     }
 };
 
+// Along one axis, whether a surface from `low` to `high` ends at the border of the sector that begins at
+// `corner`, or goes over it by less than rounding. A sector is half open: what stands on its border is in it.
+bool only_touches(double low, double high, double corner) {
+    const double slack = 0x1p-10 + std::abs(corner) * 0x1p-20;
+    const double end = corner + sector_size_m;
+    return (low < corner - slack && high <= corner + slack) || (low >= end - slack && high > end + slack);
+}
+
 // REQUIRES: the triangle lies in the span.
 void add_triangle(const std::array<Corner, 3>& triangle, Span& span, std::size_t& tests) {
     Corner low = triangle[0];
@@ -90,10 +105,7 @@ void add_triangle(const std::array<Corner, 3>& triangle, Span& span, std::size_t
             if (span.reached[at])
                 continue;
             const Corner corner{i * sector_size_m, j * sector_size_m};
-            // A sector is half open: a surface that ends on its western or southern border is not in it.
-            if (high.x <= corner.x && low.x < corner.x)
-                continue;
-            if (high.y <= corner.y && low.y < corner.y)
+            if (only_touches(low.x, high.x, corner.x) || only_touches(low.y, high.y, corner.y))
                 continue;
             if (!overlaps_square(triangle, corner, corner + sector_size_m))
                 continue;
@@ -157,7 +169,7 @@ void insert_reached(const Span& span, std::set<SectorCoordinate>& found) {
 
 }  // namespace
 
-tl::expected<std::vector<SectorCoordinate>, std::string> sectors_with_ground(const Map& map) {
+tl::expected<std::vector<SectorCoordinate>, std::string> sectors_of(const Map& map) {
     std::set<SectorCoordinate> found;
     std::size_t tests = 0;
     for (const Object& object : map.objects) {
@@ -187,6 +199,8 @@ tl::expected<std::vector<SectorCoordinate>, std::string> sectors_with_ground(con
         if (found.size() > max_sectors)
             return tl::unexpected(fmt::format("the map covers more than {} sectors", max_sectors));
     }
+    for (const ManualProbe& probe : map.probes)
+        found.insert(sector_holding(probe));
     std::vector<SectorCoordinate> sectors(found.begin(), found.end());
     std::ranges::sort(sectors, [](const SectorCoordinate& a, const SectorCoordinate& b) {
         return std::pair(a.j, a.i) < std::pair(b.j, b.i);

@@ -1,4 +1,5 @@
-// Which sectors of a map have ground: some static surface over or under the sector's square.
+// Which sectors a map has: those with ground, some static surface over or under the sector's square, and
+// those with a hand-placed probe.
 #pragma once
 
 #include "bakerd/map/map.h"
@@ -19,8 +20,8 @@ struct SectorCoordinate {
 
 inline constexpr double sector_size_m = 64;
 
-// Sorted by (j, i). Fails with a sentence when an object lies beyond the range of sector coordinates
-// (+-16384) or the map covers more than 2^20 sectors.
-[[nodiscard]] tl::expected<std::vector<SectorCoordinate>, std::string> sectors_with_ground(const Map& map);
+// Sorted by (j, i). What reaches over a border by mere rounding is not beyond it. Fails with a sentence when
+// an object lies beyond the range of sector coordinates (+-16384) or the map covers more than 2^20 sectors.
+[[nodiscard]] tl::expected<std::vector<SectorCoordinate>, std::string> sectors_of(const Map& map);
 
 }  // namespace drtv::map

@@ -150,7 +150,7 @@ struct ManualProbe {
     std::string name;
 };
 
-enum class VolumeKind : std::uint8_t { no_probes, interior };
+enum class VolumeKind : std::uint8_t { no_probes, interior, spacing };
 
 // A closed mesh in world space (closedness is checked by placement, which has the tools for it).
 struct Volume {
@@ -158,6 +158,7 @@ struct Volume {
     std::vector<glm::dvec3> positions;
     std::vector<glm::uvec3> triangles;
     std::string probe_name;  // interior: `bake_probe`, may be empty
+    float spacing_m = 0;     // spacing: `bake_spacing`, the least distance of automatic probes inside
     std::string name;
     Digest digest;
 };

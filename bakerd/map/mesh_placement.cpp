@@ -32,9 +32,11 @@ bool is_far(const glm::dvec3& position) {
     return !(glm::length(position) < max_distance_m);
 }
 
-Imported MeshPlacer::count(std::uint32_t mesh, NodeRole role, std::size_t instances) {
-    if (is_volume(role))
-        return count_copied(mesh, instances);
+Imported MeshPlacer::count(std::uint32_t mesh, const NodePurpose& purpose, std::size_t instances) {
+    if (is_volume(purpose.role) || purpose.spacing_m > 0) {
+        if (auto counted = count_copied(mesh, instances); !counted || is_volume(purpose.role))
+            return counted;
+    }
     placed_vertices_ += instances * vertices_of(mesh);
     if (map_.objects.size() + instances > max_objects)
         return tl::unexpected(
@@ -48,9 +50,22 @@ Imported MeshPlacer::count(std::uint32_t mesh, NodeRole role, std::size_t instan
 }
 
 Imported MeshPlacer::place(MeshPlace place, const NodePurpose& purpose) {
-    if (is_volume(purpose.role))
-        return add_volume(std::move(place), purpose);
-    return add_object(std::move(place), purpose.role);
+    if (purpose.spacing_m > 0) {
+        Volume volume;
+        volume.kind = VolumeKind::spacing;
+        volume.spacing_m = purpose.spacing_m;
+        auto added = add_volume(place, std::move(volume));
+        if (!added || purpose.role == NodeRole::spacing)
+            return added;
+    }
+    if (!is_volume(purpose.role))
+        return add_object(std::move(place), purpose.role);
+    Volume volume;
+    if (purpose.role == NodeRole::interior) {
+        volume.kind = VolumeKind::interior;
+        volume.probe_name = purpose.bake_probe;
+    }
+    return add_volume(place, std::move(volume));
 }
 
 std::size_t MeshPlacer::vertices_of(std::uint32_t mesh) const {
@@ -110,13 +125,8 @@ Imported MeshPlacer::add_object(MeshPlace place, NodeRole role) {
     return {};
 }
 
-Imported MeshPlacer::add_volume(MeshPlace place, const NodePurpose& purpose) {
-    Volume volume;
-    if (purpose.role == NodeRole::interior) {
-        volume.kind = VolumeKind::interior;
-        volume.probe_name = purpose.bake_probe;
-    }
-    volume.name = std::move(place.name);
+Imported MeshPlacer::add_volume(const MeshPlace& place, Volume volume) {
+    volume.name = place.name;
     for (const Primitive& primitive : map_.meshes[place.mesh].primitives) {
         const auto first = static_cast<std::uint32_t>(volume.positions.size());
         for (const glm::vec3& position : primitive.positions) {

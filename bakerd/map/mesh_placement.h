@@ -30,7 +30,7 @@ class MeshPlacer {
     MeshPlacer(Map& map, Shared& shared) : map_(map), shared_(shared) {}
 
     // To be asked before the instances of a node are placed.
-    [[nodiscard]] Imported count(std::uint32_t mesh, NodeRole role, std::size_t instances);
+    [[nodiscard]] Imported count(std::uint32_t mesh, const NodePurpose& purpose, std::size_t instances);
 
     // REQUIRES: the place is counted; the role is not `ignore` or `probe`.
     [[nodiscard]] Imported place(MeshPlace place, const NodePurpose& purpose);
@@ -40,7 +40,7 @@ class MeshPlacer {
     [[nodiscard]] Imported count_copied(std::uint32_t mesh, std::size_t instances);
     [[nodiscard]] std::uint32_t flattened_mesh(std::uint32_t mesh, const glm::mat4x3& world_from_object);
     [[nodiscard]] Imported add_object(MeshPlace place, NodeRole role);
-    [[nodiscard]] Imported add_volume(MeshPlace place, const NodePurpose& purpose);
+    [[nodiscard]] Imported add_volume(const MeshPlace& place, Volume volume);
 
     Map& map_;
     Shared& shared_;

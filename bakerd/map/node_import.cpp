@@ -115,7 +115,7 @@ class NodeImporter {
         const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
         if (instancing != node.extensions.end())
             return place_instances(pending, {*mesh, world_from_node, node.name}, instancing->second);
-        if (auto counted = placer_.count(*mesh, pending.purpose.role, 1); !counted)
+        if (auto counted = placer_.count(*mesh, pending.purpose, 1); !counted)
             return fail(pending.node, counted.error());
         return place(pending, {*mesh, world_from_node, node.name});
     }
@@ -133,7 +133,7 @@ class NodeImporter {
         const auto transforms = instance_transforms(state_.document, instancing);
         if (!transforms)
             return fail(pending.node, "EXT_mesh_gpu_instancing: " + transforms.error());
-        if (auto counted = placer_.count(base.mesh, pending.purpose.role, transforms->size()); !counted)
+        if (auto counted = placer_.count(base.mesh, pending.purpose, transforms->size()); !counted)
             return fail(pending.node, counted.error());
         for (std::size_t n = 0; n < transforms->size(); ++n) {
             const glm::dmat4 world_from_instance = base.world_from_object * (*transforms)[n];

@@ -20,28 +20,60 @@ constexpr std::array<RoleName, 6> role_names = {{{"static", NodeRole::fixed},
                                                  {"no_probes", NodeRole::no_probes},
                                                  {"interior", NodeRole::interior}}};
 
+// Placement's range of distances.
+constexpr double min_spacing_m = 1;
+constexpr double max_spacing_m = 16;
+
+tl::expected<void, std::string> read_role(const tinygltf::Value& value, NodeRole& role) {
+    if (!value.IsString())
+        return tl::unexpected(std::string("bake_role must be a string"));
+    const std::string& name = value.Get<std::string>();
+    const auto* found = std::ranges::find(role_names, name, &RoleName::name);
+    if (found == role_names.end())
+        return tl::unexpected(fmt::format(
+            "bake_role '{}' is not one of static, vegetation, ignore, probe, no_probes, interior", name));
+    role = found->role;
+    return {};
+}
+
+tl::expected<float, std::string> read_spacing(const tinygltf::Value& value) {
+    if (!value.IsNumber())
+        return tl::unexpected(std::string("bake_spacing must be a number"));
+    const double spacing_m = value.GetNumberAsDouble();
+    if (!(spacing_m >= min_spacing_m && spacing_m <= max_spacing_m))
+        return tl::unexpected(fmt::format(
+            "bake_spacing is {}, not between {} and {} m", spacing_m, min_spacing_m, max_spacing_m));
+    return static_cast<float>(spacing_m);
+}
+
 }  // namespace
 
 tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePurpose& purpose) {
     const tinygltf::Value& extras = node.extras;
     if (!extras.IsObject())
         return {};
-    if (extras.Has("bake_role")) {
-        const tinygltf::Value& value = extras.Get("bake_role");
-        if (!value.IsString())
-            return tl::unexpected(std::string("bake_role must be a string"));
-        const std::string& name = value.Get<std::string>();
-        const auto* found = std::ranges::find(role_names, name, &RoleName::name);
-        if (found == role_names.end())
-            return tl::unexpected(fmt::format(
-                "bake_role '{}' is not one of static, vegetation, ignore, probe, no_probes, interior", name));
-        purpose.role = found->role;
+    const bool has_role = extras.Has("bake_role");
+    if (has_role) {
+        if (auto read = read_role(extras.Get("bake_role"), purpose.role); !read)
+            return read;
+        purpose.spacing_m = 0;
     }
     if (extras.Has("bake_probe")) {
         const tinygltf::Value& value = extras.Get("bake_probe");
         if (!value.IsString())
             return tl::unexpected(std::string("bake_probe must be a string"));
         purpose.bake_probe = value.Get<std::string>();
+    }
+    if (extras.Has("bake_spacing")) {
+        const auto spacing_m = read_spacing(extras.Get("bake_spacing"));
+        if (!spacing_m)
+            return tl::unexpected(spacing_m.error());
+        if (has_role && purpose.role != NodeRole::fixed && purpose.role != NodeRole::interior)
+            return tl::unexpected(
+                std::string("bake_spacing goes with bake_role 'static' or 'interior', or alone"));
+        purpose.spacing_m = *spacing_m;
+        if (!has_role && purpose.role != NodeRole::interior)
+            purpose.role = NodeRole::spacing;
     }
     return {};
 }

@@ -9,20 +9,30 @@
 
 namespace drtv::map {
 
-enum class NodeRole { fixed, vegetation, ignore, probe, no_probes, interior };
+enum class NodeRole {
+    fixed,
+    vegetation,
+    ignore,
+    probe,
+    no_probes,
+    interior,
+    spacing,  // of a node that says bake_spacing and no role
+};
 
-// Children inherit both.
+// Children inherit it.
 struct NodePurpose {
     NodeRole role = NodeRole::fixed;
     std::string bake_probe;  // name of the probe that an interior uses, or empty
+    float spacing_m = 0;     // between automatic probes inside of the mesh; 0 where nothing is said
 };
 
-// Replaces what the node's `bake_role` and `bake_probe` say. Fails when one of them is not a string or names
-// no role; the sentence does not name the node.
+// Replaces what the node's `bake_role`, `bake_probe` and `bake_spacing` say; a role of its own ends what is
+// inherited of the spacing. Fails when one of them is of another type, names no role, is out of range or does
+// not go with the others; the sentence does not name the node.
 [[nodiscard]] tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePurpose& purpose);
 
 [[nodiscard]] constexpr bool is_volume(NodeRole role) {
-    return role == NodeRole::no_probes || role == NodeRole::interior;
+    return role == NodeRole::no_probes || role == NodeRole::interior || role == NodeRole::spacing;
 }
 
 }  // namespace drtv::map

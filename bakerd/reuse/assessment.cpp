@@ -38,7 +38,8 @@ class Assessor {
           settings_(settings),
           world_(world),
           crossed_blocks_(footprint),
-          solid_tests_(footprint) {
+          solid_tests_(footprint),
+          placement_reach_(placement_reach(footprint, settings, world)) {
         assessment_.tolerance = footprint.without_bounds ? 0 : tolerance;
     }
 
@@ -97,7 +98,7 @@ class Assessor {
             return true;
         if (assessment_.verdict != Verdict::rebake || settled())
             return false;
-        return footprint_grid(footprint_.sector, settings_, *around().scene) != footprint_.grid;
+        return footprint_grid(footprint_.sector, settings_, world_) != footprint_.grid;
     }
 
     [[nodiscard]] bool over(float bound) const { return bound > assessment_.tolerance; }
@@ -119,15 +120,17 @@ class Assessor {
             assessment_.placement_holds = false;
             count(cause, unbounded);
         };
+        ProbesMove move = ProbesMove::no;
         for (const Item* item : sides_of(change)) {
-            if (const std::optional<Cause> cause = moves_probes(*item, footprint_))
-                placement_fails(*cause);
+            move = std::max(move, moves_probes(*item, footprint_, placement_reach_));
             if (shines_on_probes(*item))
                 count(Cause::light, unbounded);
         }
         const std::vector<Bounds> boxes = boxes_of(change);
         if (assessment_.placement_holds && solid_tests_.add(boxes))
-            placement_fails(Cause::placement);
+            move = std::max(move, ProbesMove::maybe);
+        if (move == ProbesMove::yes || (move == ProbesMove::maybe && stand_elsewhere()))
+            placement_fails(change.item().kind == ItemKind::interior ? Cause::interior : Cause::placement);
         if (within_reach(boxes))
             count(Cause::rays, count_rays(boxes));
         return weighed;
@@ -181,6 +184,16 @@ class Assessor {
         return any;
     }
 
+    // Whether placing the sector again gives anything else.
+    bool stand_elsewhere() {
+        if (!assessment_.placed_again) {
+            assessment_.placed_again = true;
+            stands_elsewhere_ =
+                placement_digest(world_, footprint_.sector, settings_) != footprint_.placement;
+        }
+        return stands_elsewhere_;
+    }
+
     [[nodiscard]] bool within_reach(std::span<const Bounds> boxes) const {
         constexpr float infinity = std::numeric_limits<float>::infinity();
         Bounds reached{footprint_.grid.low(), footprint_.grid.high()};
@@ -208,6 +221,8 @@ class Assessor {
     bake::World& world_;
     CrossedBlocks crossed_blocks_;
     SolidTestChanges solid_tests_;
+    const PlacementReach placement_reach_;
+    bool stands_elsewhere_ = false;
     Assessment assessment_;
     std::optional<bake::Surroundings> around_;
     std::optional<FirstRays> first_rays_;

@@ -26,6 +26,7 @@ struct Assessment {
     // each solid test may end otherwise; and how much of each probe may differ. No bounds where only the
     // whole can be baked again.
     bool placement_holds = true;
+    bool placed_again = false;  // to find that out: what was recorded of the solid tests is out of date
     std::vector<std::uint8_t> flips;
     std::vector<float> probe_bounds;
     float gain = 1;         // of a path's weight, in all bounds (Footprint::gain)

@@ -24,6 +24,8 @@ const char* words_for(ItemKind kind) {
             return "a no_probes volume";
         case ItemKind::interior:
             return "an interior";
+        case ItemKind::spacing:
+            return "a bake_spacing volume";
     }
     return "something";
 }

@@ -12,12 +12,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace drtv::reuse {
 
 // Of what a record says, and how: results whose record is of another version are never candidates.
-inline constexpr std::uint32_t footprint_version = 4;
+inline constexpr std::uint32_t footprint_version = 5;
 
 // Results of a sector with the same key may stand for each other, where their records say so: settings_key
 // and the version of the records.
@@ -49,8 +50,8 @@ struct Footprint {
     // 0 where there are none. Of all maps whose probes are here.
     float static_gain = 0;
     float most_scattered = 1;  // of their surfaces (trace::most_scattered), above 0
-    float placement_m = 0;     // how far around the sector placement looked down its columns
-    float min_distance_m = 0;  // between probes
+    float placement_m = 0;     // how far around the sector a change may move its probes
+    map::Digest placement;     // placement_digest
 
     std::vector<ProbeRecord> probes;
     // Where rays went; the probes' first ones need no record: they follow from where the probes stand.
@@ -58,7 +59,8 @@ struct Footprint {
     std::vector<std::uint64_t> crossed;  // by column: its layers that a ray crossed
     std::vector<std::uint8_t>
         weights;  // by block and quarter: the largest share in a coefficient of a probe, as a code
-    std::vector<bake::SolidTest> solid_tests;  // sorted
+    std::vector<placement::SolidTest> solid_tests;  // sorted
+    std::vector<std::string> placement_warnings;
 
     bool operator==(const Footprint&) const = default;
 

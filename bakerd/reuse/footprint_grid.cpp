@@ -67,9 +67,10 @@ FootprintGrid footprint_grid(map::SectorCoordinate sector, float distance_m, flo
 
 FootprintGrid footprint_grid(map::SectorCoordinate sector,
                              const bake::Settings& settings,
-                             const trace::Scene& scene) {
-    const map::Bounds& bounds = scene.bounds();
-    return footprint_grid(sector, bake::scene_distance_m(settings), bounds.low.z, bounds.high.z);
+                             bake::World& world) {
+    const map::Bounds bounds = world.surroundings(sector, settings).scene->bounds();
+    const float distance_m = bake::scene_distance_m(world.placement_tags(), settings);
+    return footprint_grid(sector, distance_m, bounds.low.z, bounds.high.z);
 }
 
 std::size_t quarter_of(map::SectorCoordinate sector, const placement::Position& probe) {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bakerd/bake/settings.h"
+#include "bakerd/bake/world.h"
 #include "bakerd/map/ground.h"
-#include "bakerd/trace/scene.h"
 #include "placement/placement.h"
 
 #include <glm/vec3.hpp>
@@ -55,10 +55,10 @@ struct FootprintGrid {
                                            float low_m,
                                            float high_m);
 
-// Covers all that a bake of the sector looks at. REQUIRES: `scene` holds it (bake::scene_distance_m).
+// Covers all that a bake of the sector looks at.
 [[nodiscard]] FootprintGrid footprint_grid(map::SectorCoordinate sector,
                                            const bake::Settings& settings,
-                                           const trace::Scene& scene);
+                                           bake::World& world);
 
 // Probes of a quarter of the sector share their weights: what many of them hardly see, some see well.
 inline constexpr std::size_t quarter_count = 4;

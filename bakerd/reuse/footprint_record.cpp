@@ -13,7 +13,7 @@
 namespace drtv::reuse {
 namespace {
 
-using bake::SolidTest;
+using placement::SolidTest;
 
 constexpr std::uint64_t magic = 0x50'46'56'54'52'44;  // "DRTVFP"
 constexpr std::uint32_t max_rays = 1u << 16;
@@ -152,7 +152,7 @@ std::vector<std::uint8_t> encode_with(const Footprint& footprint, std::uint8_t m
     writer.add(footprint.static_gain);
     writer.add(footprint.most_scattered);
     writer.add(footprint.placement_m);
-    writer.add(footprint.min_distance_m);
+    writer.add(footprint.placement);
     add_records(writer, footprint.probes);
     writer.add(footprint.grid);
     write_crossed(writer, footprint);
@@ -165,6 +165,7 @@ std::vector<std::uint8_t> encode_with(const Footprint& footprint, std::uint8_t m
     }
     writer.add_all(in_pairs(weights));
     add_records(writer, footprint.solid_tests);
+    writer.add_texts(footprint.placement_warnings);
     return writer.compressed();
 }
 
@@ -183,8 +184,7 @@ bool is_sound(const FootprintGrid& grid) {
 bool is_sound(const Footprint& footprint) {
     const auto sensible = [](float value) { return value >= 0 && std::isfinite(value); };
     const bool has_rays = footprint.rays > 0 && footprint.rays <= max_rays;
-    const bool has_lengths =
-        sensible(footprint.reach_m) && sensible(footprint.placement_m) && sensible(footprint.min_distance_m);
+    const bool has_lengths = sensible(footprint.reach_m) && sensible(footprint.placement_m);
     const bool has_light = sensible(footprint.static_gain) && footprint.most_scattered > 0 &&
                            std::isfinite(footprint.most_scattered);
     const auto has_share = [&](const ProbeRecord& probe) { return sensible(probe.share); };
@@ -226,7 +226,7 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     footprint.static_gain = reader.read<float>();
     footprint.most_scattered = reader.read<float>();
     footprint.placement_m = reader.read<float>();
-    footprint.min_distance_m = reader.read<float>();
+    footprint.placement = reader.read<map::Digest>();
     footprint.probes = read_records<ProbeRecord>(reader);
     footprint.grid = reader.read<FootprintGrid>();
     if (!reader.sound() || !is_sound(footprint.grid))
@@ -234,6 +234,7 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     read_crossed(reader, footprint);
     const std::vector<std::uint8_t> weights = from_pairs(reader.read_all<std::uint8_t>());
     footprint.solid_tests = read_records<SolidTest>(reader);
+    footprint.placement_warnings = reader.read_texts();
     if (!reader.complete() || !is_sound(footprint))
         return std::nullopt;
     const std::vector<std::size_t> blocks = crossed_blocks(footprint);

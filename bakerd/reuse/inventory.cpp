@@ -9,7 +9,11 @@
 namespace drtv::reuse {
 namespace {
 
-constexpr std::uint64_t magic = 0x31'4E'49'56'54'52'44;  // "DRTVIN1"
+constexpr std::uint64_t magic = 0x32'4E'49'56'54'52'44;  // "DRTVIN2"
+
+// Beside the kind.
+constexpr unsigned emissive_bit = 128;
+constexpr unsigned bounds_volume_bit = 64;
 
 ItemDigest half(const map::Digest& digest) {
     ItemDigest first{};
@@ -69,7 +73,7 @@ auto identity(const Item& item) {
 
 }  // namespace
 
-Inventory take_inventory(const bake::World& world) {
+Inventory take_inventory(bake::World& world) {
     Inventory inventory;
     const map::Map& map = world.map();
     std::size_t next_emissive = 0;
@@ -79,19 +83,21 @@ Inventory take_inventory(const bake::World& world) {
         const bool shines = next_emissive < emissive.size() && emissive[next_emissive].object == n;
         if (shines)
             ++next_emissive;
-        inventory.items.push_back(
-            {object.role == map::Role::vegetation ? ItemKind::vegetation : ItemKind::fixed,
-             shines,
-             half(object.digest),
-             half(map.meshes[object.mesh].digest),
-             object.bounds,
-             object.name});
+        const bool vegetation = object.role == map::Role::vegetation;
+        inventory.items.push_back({vegetation ? ItemKind::vegetation : ItemKind::fixed,
+                                   shines,
+                                   vegetation && world.bounds_volume(object.mesh),
+                                   half(object.digest),
+                                   half(map.meshes[object.mesh].digest),
+                                   object.bounds,
+                                   object.name});
     }
     for (const map::Light& light : map.lights) {
         if (!bake::shines(light))
             continue;
         const bool sun = light.kind == map::LightKind::directional;
         inventory.items.push_back({sun ? ItemKind::sun : ItemKind::lamp,
+                                   false,
                                    false,
                                    half(light.digest),
                                    shape_of_light(light),
@@ -101,23 +107,27 @@ Inventory take_inventory(const bake::World& world) {
     for (const map::ManualProbe& probe : map.probes) {
         inventory.items.push_back({ItemKind::manual_probe,
                                    false,
+                                   false,
                                    digest_of_probe(probe.position),
                                    {},
                                    point(glm::vec3(probe.position)),
                                    probe.name});
     }
     for (const map::Volume& volume : map.volumes) {
-        if (volume.kind != map::VolumeKind::no_probes)
+        if (volume.kind == map::VolumeKind::interior)
             continue;
         map::Bounds bounds;
         for (const glm::dvec3& position : volume.positions)
             bounds.extend(glm::vec3(position));
-        inventory.items.push_back({ItemKind::no_probes, false, half(volume.digest), {}, bounds, volume.name});
+        const ItemKind kind =
+            volume.kind == map::VolumeKind::spacing ? ItemKind::spacing : ItemKind::no_probes;
+        inventory.items.push_back({kind, false, false, half(volume.digest), {}, bounds, volume.name});
     }
     for (const bake::InteriorVolume& interior : world.interiors()) {
         if (!interior.probe)
             continue;  // no file holds it
         inventory.items.push_back({ItemKind::interior,
+                                   false,
                                    false,
                                    digest_of_interior(interior),
                                    {},
@@ -134,7 +144,9 @@ std::vector<std::uint8_t> encode_inventory(const Inventory& inventory) {
     writer.add(magic);
     writer.add(static_cast<std::uint64_t>(inventory.items.size()));
     for (const Item& item : inventory.items)
-        writer.add(static_cast<std::uint8_t>(static_cast<unsigned>(item.kind) | (item.emissive ? 128u : 0u)));
+        writer.add(static_cast<std::uint8_t>(static_cast<unsigned>(item.kind) |
+                                             (item.emissive ? emissive_bit : 0u) |
+                                             (item.bounds_volume ? bounds_volume_bit : 0u)));
     for (const Item& item : inventory.items)
         writer.add(item.digest);
     for (const Item& item : inventory.items)
@@ -153,12 +165,14 @@ std::optional<Inventory> decode_inventory(std::span<const std::uint8_t> bytes) {
     const auto count = reader.read<std::uint64_t>();
     Inventory inventory;
     for (std::uint64_t n = 0; n < count && reader.sound(); ++n) {
-        const auto kind = reader.read<std::uint8_t>();
-        if ((kind & 127u) > static_cast<unsigned>(ItemKind::interior))
+        const auto bits = reader.read<std::uint8_t>();
+        const unsigned kind = bits & ~(emissive_bit | bounds_volume_bit);
+        if (kind > static_cast<unsigned>(ItemKind::spacing))
             return std::nullopt;
         Item& item = inventory.items.emplace_back();
-        item.kind = static_cast<ItemKind>(kind & 127u);
-        item.emissive = kind >= 128;
+        item.kind = static_cast<ItemKind>(kind);
+        item.emissive = (bits & emissive_bit) != 0;
+        item.bounds_volume = (bits & bounds_volume_bit) != 0;
     }
     for (Item& item : inventory.items)
         item.digest = reader.read<ItemDigest>();

@@ -14,15 +14,25 @@
 
 namespace drtv::reuse {
 
-enum class ItemKind : std::uint8_t { fixed, vegetation, lamp, sun, manual_probe, no_probes, interior };
+enum class ItemKind : std::uint8_t {
+    fixed,
+    vegetation,
+    lamp,
+    sun,
+    manual_probe,
+    no_probes,
+    interior,
+    spacing,
+};
 
 // The first half of a SHA-256.
 using ItemDigest = std::array<std::uint8_t, 16>;
 
 struct Item {
     ItemKind kind = ItemKind::fixed;
-    bool emissive = false;  // an object that shines
-    ItemDigest digest{};    // of all that can change a bake
+    bool emissive = false;       // an object that shines
+    bool bounds_volume = false;  // vegetation of which a part is closed
+    ItemDigest digest{};         // of all that can change a bake
     ItemDigest
         shape{};  // of an object's mesh, of a light without its place: tells a move from another change
     map::Bounds
@@ -36,7 +46,7 @@ struct Inventory {
     std::vector<Item> items;  // by kind and digest
 };
 
-[[nodiscard]] Inventory take_inventory(const bake::World& world);
+[[nodiscard]] Inventory take_inventory(bake::World& world);
 
 [[nodiscard]] std::vector<std::uint8_t> encode_inventory(const Inventory& inventory);
 // Nothing when the bytes are not such.

@@ -1,5 +1,7 @@
 #include "bakerd/reuse/placement_changes.h"
 
+#include "placement/solid_test.h"
+
 #include <drtv/conventions.h>
 
 #include <algorithm>
@@ -28,58 +30,89 @@ bool holds_lattice_point(const Bounds& bounds, float step_m) {
     return between(bounds.low.x, bounds.high.x) && between(bounds.low.y, bounds.high.y);
 }
 
-// The grid's cells look for their probes all over the sector; columns stand on their lattices.
-bool object_moves_probes(const Item& object, const Footprint& footprint) {
-    const Bounds bounds = grown(object.bounds, glm::vec3(slack_m(object.bounds, footprint.reach_m)));
-    const Bounds square = square_of(footprint.sector);
-    if (overlap(bounds, square))
-        return true;
-    const bool vegetation = object.kind == ItemKind::vegetation;
-    const auto lattice_m =
-        static_cast<float>(vegetation ? placement::vegetation_lattice_m : placement::ground_lattice_m);
-    const glm::vec3 margin(footprint.placement_m, footprint.placement_m, 0);
-    return overlap(bounds, grown(square, margin)) && holds_lattice_point(bounds, lattice_m);
+void add_placed(map::Hasher& hasher, const bake::PlacedSector& placed) {
+    hasher.add_sized(placed.positions);
+    for (std::size_t p = 0; p < placed.positions.size(); ++p) {
+        hasher.add(placed.sector.probes[p].kind);
+        hasher.add(static_cast<std::uint8_t>(placed.moved[p]));
+    }
+    hasher.add(placed.sector.z_origin_units);
+    hasher.add(placed.sector.z_shift);
+    const placement::Report& report = placed.report;
+    for (const std::uint32_t count : {report.candidates,
+                                      report.moved_out,
+                                      report.dropped_in_solid,
+                                      report.removed_by_volume,
+                                      report.thinned})
+        hasher.add(count);
+    hasher.add(report.used_distance_m);
+    for (const std::string& warning : placed.warnings)
+        hasher.add_sized(warning);
 }
 
 }  // namespace
 
-std::optional<Cause> moves_probes(const Item& item, const Footprint& footprint) {
-    const auto when = [](bool moves, Cause cause) { return moves ? std::optional(cause) : std::nullopt; };
-    const auto within = [&](float metres) {
-        return overlap(item.bounds, grown(square_of(footprint.sector), {metres, metres, 0}));
-    };
-    switch (item.kind) {
-        case ItemKind::fixed:
-        case ItemKind::vegetation:
-            return when(object_moves_probes(item, footprint), Cause::placement);
-        case ItemKind::manual_probe:
-        case ItemKind::no_probes:
-            // As far as candidates stand and may be moved, and keep their distance.
-            return when(within(footprint.placement_m + 2 * footprint.min_distance_m), Cause::placement);
-        case ItemKind::interior:
-            return when(within(position_unit_m), Cause::interior);
-        case ItemKind::lamp:
-        case ItemKind::sun:
-            return std::nullopt;
+std::optional<map::Digest> placement_digest(bake::World& world,
+                                            map::SectorCoordinate sector,
+                                            const bake::Settings& settings) {
+    const auto scene = world.surroundings(sector, settings).scene;
+    const std::int32_t around = settings.local_transfer ? 1 : 0;
+    map::Hasher hasher;
+    for (std::int32_t j = sector.j - around; j <= sector.j + around; ++j) {
+        for (std::int32_t i = sector.i - around; i <= sector.i + around; ++i) {
+            const bool is_there = world.has_sector({i, j});
+            hasher.add(static_cast<std::uint8_t>(is_there));
+            if (!is_there)
+                continue;
+            const auto placed = world.placed({i, j}, settings, *scene);
+            if (!*placed)
+                return std::nullopt;
+            add_placed(hasher, **placed);
+        }
     }
-    return Cause::placement;
+    return hasher.finish();
+}
+
+PlacementReach placement_reach(const Footprint& footprint,
+                               const bake::Settings& settings,
+                               const bake::World& world) {
+    const bake::PlacementTags& tags = world.placement_tags();
+    return {std::max(footprint.placement_m, bake::placement_reach_m(tags, settings)),
+            settings.min_distance_m < placement::ground_lattice_m || !tags.spacings.empty()};
+}
+
+// Whether something static is in the way between two probes, or two places of the grid, nobody notes: where
+// it is or was, the sector is placed again.
+ProbesMove moves_probes(const Item& item, const Footprint& footprint, const PlacementReach& reach) {
+    if (item.kind == ItemKind::lamp || item.kind == ItemKind::sun)
+        return ProbesMove::no;
+    const Bounds bounds = grown(item.bounds, glm::vec3(slack_m(item.bounds, footprint.reach_m)));
+    const auto within = [&](float metres) {
+        return overlap(bounds, grown(square_of(footprint.sector), {metres, metres, 0}));
+    };
+    if (within(0) || (item.kind == ItemKind::interior && within(position_unit_m)))
+        return ProbesMove::yes;
+    const bool leaves_alone = item.kind == ItemKind::vegetation && !item.bounds_volume;
+    const bool matters = !leaves_alone || reach.vegetation_everywhere ||
+                         holds_lattice_point(bounds, placement::vegetation_lattice_m);
+    return matters && within(reach.within_m) ? ProbesMove::maybe : ProbesMove::no;
 }
 
 SolidTestChanges::SolidTestChanges(const Footprint& footprint)
     : footprint_(footprint), rays_(footprint.solid_tests.size(), 0) {}
 
 bool SolidTestChanges::add(std::span<const Bounds> boxes) {
-    const std::span<const glm::vec3> directions = placement::solid_test_directions();
+    const std::span<const placement::Look> looks = placement::solid_test_looks();
     const float reach_m = footprint_.reach_m;
     for (std::size_t n = 0; n < rays_.size(); ++n) {
-        const bake::SolidTest& test = footprint_.solid_tests[n];
+        const placement::SolidTest& test = footprint_.solid_tests[n];
         const glm::vec3 place = placement::metres(test.position);
         const auto is_near = [&](const Bounds& box) { return distance(box, place) <= reach_m; };
         if (std::ranges::none_of(boxes, is_near))
             continue;
-        for (std::size_t d = 0; d < directions.size(); ++d) {
+        for (std::size_t d = 0; d < looks.size(); ++d) {
             const auto is_met = [&](const Bounds& box) {
-                return entry_distance(place, directions[d], box) <= reach_m;
+                return entry_distance(place, looks[d].direction, box) <= reach_m;
             };
             const std::uint32_t bit = 1u << d;
             if ((rays_[n] & bit) == 0 && std::ranges::any_of(boxes, is_met))

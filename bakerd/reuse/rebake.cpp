@@ -2,6 +2,7 @@
 
 #include "bakerd/bake/artist_warnings.h"
 #include "bakerd/reuse/footprint_recorder.h"
+#include "bakerd/reuse/placement_changes.h"
 #include "bakerd/reuse/static_gain.h"
 
 #include <algorithm>
@@ -36,6 +37,7 @@ bake::PlacedSector placement_of(const EarlierBake& earlier) {
     const Statistics& s = file.statistics;
     placed.report = {
         s.candidates, s.moved_out, s.dropped_in_solid, s.removed_by_volume, s.thinned, s.used_distance_m};
+    placed.warnings = earlier.footprint.placement_warnings;
     // Rays that may end otherwise cannot be counted on any more.
     placed.solid_tests = earlier.footprint.solid_tests;
     for (std::size_t n = 0; n < placed.solid_tests.size(); ++n) {
@@ -60,7 +62,8 @@ bake::BakedProbe baked_probe(const EarlierBake& earlier, std::size_t p, std::uin
 bake::Given given_by(const EarlierBake& earlier, const bake::Settings& settings) {
     bake::Given given;
     if (earlier.assessment.placement_holds) {
-        given.placement = placement_of(earlier);
+        if (!earlier.assessment.placed_again)
+            given.placement = placement_of(earlier);
         given.grid = earlier.sector.grid;
     }
     for (std::size_t p = 0; p < earlier.footprint.probes.size(); ++p) {
@@ -88,7 +91,7 @@ class Recording {
           sector_(sector),
           settings_(settings),
           scene_(world.surroundings(sector, settings).scene),
-          grid_(footprint_grid(sector, settings, *scene_)),
+          grid_(footprint_grid(sector, settings, world)),
           recorders_(sector, grid_) {}
 
     tl::expected<Rebake, std::string> bake(const EarlierBake* earlier) {
@@ -104,7 +107,7 @@ class Recording {
         record_probes(result, earlier);
         record_static_light(result, earlier);
         record_rays(result, earlier);
-        result.footprint.solid_tests = result.baked.solid_tests;
+        record_placement(result, earlier);
         return result;
     }
 
@@ -114,8 +117,17 @@ class Recording {
         footprint.reach_m = settings_.reach_m;
         footprint.rays = settings_.rays;
         footprint.without_bounds = settings_.local_transfer || settings_.error > 0;
-        footprint.placement_m = bake::placement_margin_m(settings_);
-        footprint.min_distance_m = settings_.min_distance_m;
+        footprint.placement_m = bake::placement_reach_m(world_.placement_tags(), settings_);
+    }
+
+    void record_placement(Rebake& result, const EarlierBake* earlier) const {
+        Footprint& footprint = result.footprint;
+        footprint.solid_tests = result.baked.solid_tests;
+        footprint.placement_warnings = result.baked.placement_warnings;
+        const bool known = earlier != nullptr && earlier->assessment.placement_holds;
+        // What could not be placed was no bake.
+        footprint.placement = known ? earlier->footprint.placement
+                                    : placement_digest(world_, sector_, settings_).value_or(map::Digest{});
     }
 
     static void record_probes(Rebake& result, const EarlierBake* earlier) {

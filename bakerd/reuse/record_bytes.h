@@ -29,6 +29,12 @@ class RecordWriter {
     }
     void add_text(const std::string& text) { add_all(std::vector<char>(text.begin(), text.end())); }
 
+    void add_texts(const std::vector<std::string>& texts) {
+        add(static_cast<std::uint64_t>(texts.size()));
+        for (const std::string& text : texts)
+            add_text(text);
+    }
+
     [[nodiscard]] std::vector<std::uint8_t> compressed() const;
 
   private:
@@ -66,6 +72,14 @@ class RecordReader {
     std::string read_text() {
         const auto letters = read_all<char>();
         return {letters.begin(), letters.end()};
+    }
+
+    std::vector<std::string> read_texts() {
+        const auto count = read<std::uint64_t>();
+        std::vector<std::string> texts;
+        while (texts.size() < count && sound_)
+            texts.push_back(read_text());
+        return texts;
     }
 
     [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }

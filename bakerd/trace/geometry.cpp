@@ -27,11 +27,13 @@ void attach_points(
 MeshBvh::MeshBvh(std::shared_ptr<const Device> device,
                  std::shared_ptr<const map::Map> map,
                  std::uint32_t mesh,
+                 std::shared_ptr<const ClosedParts> closed,
                  const InstanceShape& shape,
                  std::uint64_t revision)
     : device_(std::move(device)),
       map_(std::move(map)),
-      sets_(triangle_sets(*map_, map_->meshes[mesh])),
+      closed_(std::move(closed)),
+      sets_(triangle_sets(*map_, map_->meshes[mesh], *closed_)),
       shape_(shape),
       revision_(revision),
       handle_(rtcNewScene(device_->handle())) {
@@ -57,6 +59,7 @@ MeshBvh::~MeshBvh() {
 std::uint64_t MeshShelf::next_revision() {
     const std::lock_guard lock(mutex_);
     std::erase_if(by_mesh_, [](const auto& entry) { return entry.second.expired(); });
+    std::erase_if(closed_, [](const auto& entry) { return entry.second.expired(); });
     return revisions_++;
 }
 
@@ -75,6 +78,17 @@ std::shared_ptr<const MeshBvh> MeshShelf::find(const map::Digest& mesh,
 void MeshShelf::keep(const map::Digest& mesh, const std::shared_ptr<const MeshBvh>& bvh) {
     const std::lock_guard lock(mutex_);
     by_mesh_[mesh] = bvh;
+}
+
+std::shared_ptr<const ClosedParts> MeshShelf::find_closed(const map::Digest& mesh) {
+    const std::lock_guard lock(mutex_);
+    const auto found = closed_.find(mesh);
+    return found == closed_.end() ? nullptr : found->second.lock();
+}
+
+void MeshShelf::keep_closed(const map::Digest& mesh, const std::shared_ptr<const ClosedParts>& closed) {
+    const std::lock_guard lock(mutex_);
+    closed_[mesh] = closed;
 }
 
 MapGeometry::MapGeometry(std::shared_ptr<const Device> device,
@@ -100,12 +114,34 @@ std::shared_ptr<const MeshBvh> MapGeometry::bvh_of(std::uint32_t mesh) {
     if (!bvh && shelf_)
         bvh = shelf_->find(map_->meshes[mesh].digest, slot.shape, revision_);
     if (!bvh) {
-        bvh = std::make_shared<const MeshBvh>(device_, map_, mesh, slot.shape, revision_);
+        bvh = std::make_shared<const MeshBvh>(
+            device_, map_, mesh, closed_parts_of(mesh, slot), slot.shape, revision_);
         if (shelf_)
             shelf_->keep(map_->meshes[mesh].digest, bvh);
     }
     slot.bvh = bvh;
     return bvh;
+}
+
+std::shared_ptr<const ClosedParts> MapGeometry::closed_parts_of(std::uint32_t mesh) {
+    Slot& slot = slots_[mesh];
+    const std::lock_guard lock(slot.mutex);
+    return closed_parts_of(mesh, slot);
+}
+
+// REQUIRES: the slot's mutex is held.
+const std::shared_ptr<const ClosedParts>& MapGeometry::closed_parts_of(std::uint32_t mesh, Slot& slot) {
+    if (slot.closed)
+        return slot.closed;
+    const map::Digest& digest = map_->meshes[mesh].digest;
+    if (shelf_)
+        slot.closed = shelf_->find_closed(digest);
+    if (!slot.closed) {
+        slot.closed = std::make_shared<const ClosedParts>(*map_, map_->meshes[mesh]);
+        if (shelf_)
+            shelf_->keep_closed(digest, slot.closed);
+    }
+    return slot.closed;
 }
 
 }  // namespace drtv::trace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bakerd/map/map.h"
+#include "bakerd/trace/closed_parts.h"
 #include "bakerd/trace/device.h"
 #include "bakerd/trace/instance_margin.h"
 #include "bakerd/trace/triangle_set.h"
@@ -24,6 +25,7 @@ class MeshBvh {
     MeshBvh(std::shared_ptr<const Device> device,
             std::shared_ptr<const map::Map> map,
             std::uint32_t mesh,
+            std::shared_ptr<const ClosedParts> closed,
             const InstanceShape& shape,
             std::uint64_t revision);
     ~MeshBvh();
@@ -45,6 +47,7 @@ class MeshBvh {
   private:
     std::shared_ptr<const Device> device_;
     std::shared_ptr<const map::Map> map_;
+    std::shared_ptr<const ClosedParts> closed_;
     std::vector<std::unique_ptr<TriangleSet>> sets_;  // by Embree's geometry id
     const InstanceShape shape_;
     const std::uint64_t revision_;
@@ -63,10 +66,15 @@ class MeshShelf {
                                                       std::uint64_t revision);
     void keep(const map::Digest& mesh, const std::shared_ptr<const MeshBvh>& bvh);
 
+    // The same of closed parts, which know nothing of their map.
+    [[nodiscard]] std::shared_ptr<const ClosedParts> find_closed(const map::Digest& mesh);
+    void keep_closed(const map::Digest& mesh, const std::shared_ptr<const ClosedParts>& closed);
+
   private:
     std::mutex mutex_;
-    std::uint64_t revisions_ = 0;                                  // guarded by mutex_
-    std::map<map::Digest, std::weak_ptr<const MeshBvh>> by_mesh_;  // guarded by mutex_
+    std::uint64_t revisions_ = 0;                                     // guarded by mutex_
+    std::map<map::Digest, std::weak_ptr<const MeshBvh>> by_mesh_;     // guarded by mutex_
+    std::map<map::Digest, std::weak_ptr<const ClosedParts>> closed_;  // guarded by mutex_
 };
 
 // The meshes of one map. Thread-safe.
@@ -78,6 +86,7 @@ class MapGeometry {
                 std::shared_ptr<MeshShelf> shelf = nullptr);
 
     [[nodiscard]] std::shared_ptr<const MeshBvh> bvh_of(std::uint32_t mesh);
+    [[nodiscard]] std::shared_ptr<const ClosedParts> closed_parts_of(std::uint32_t mesh);
     // Nothing for an object that cannot be an instance.
     [[nodiscard]] std::optional<InstanceShape> shape_of(const map::Object& object) const {
         return instance_shape(object.world_from_object, margin_m_);
@@ -88,12 +97,15 @@ class MapGeometry {
   private:
     struct Slot {
         InstanceShape shape;  // the largest of all its instances; constant after construction
-        std::mutex mutex;     // guards bvh
+        std::mutex mutex;     // guards the rest
         std::weak_ptr<const MeshBvh> bvh;
+        std::shared_ptr<const ClosedParts> closed;  // once asked for
     };
     const std::shared_ptr<const Device> device_;
     const std::shared_ptr<const map::Map> map_;
     const std::shared_ptr<MeshShelf> shelf_;  // may be none
+    [[nodiscard]] const std::shared_ptr<const ClosedParts>& closed_parts_of(std::uint32_t mesh, Slot& slot);
+
     const std::uint64_t revision_;
     const float margin_m_;
     std::vector<Slot> slots_;  // by mesh

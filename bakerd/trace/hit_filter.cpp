@@ -82,11 +82,19 @@ bool is_there(const Candidate& hit) {
     return !hit.set->mixed || trace::is_there(point_of(*hit.set, hit.id.triangle, *hit.at));
 }
 
-// By the material alone, before the hit is looked at.
-bool may_be_wanted(const TriangleSet& set, Collected wanted) {
-    switch (wanted) {
+// By what the triangle belongs to, before the hit is looked at.
+bool may_be_wanted(const Candidate& found, const Query& query) {
+    const TriangleSet& set = *found.set;
+    switch (query.collected) {
         case Collected::there:
             return true;
+        case Collected::of_static:
+            return query.scene.role_of(found.id.instance) != map::Role::vegetation;
+        case Collected::of_spaces:
+            return query.scene.role_of(found.id.instance) != map::Role::vegetation ||
+                   set.closed_part_of(found.id.triangle) != ClosedParts::none;
+        case Collected::closed:
+            return set.closed_part_of(found.id.triangle) != ClosedParts::none;
         case Collected::through_glass:
             return set.material->transmission > 0;
         case Collected::partly_there:
@@ -96,9 +104,9 @@ bool may_be_wanted(const TriangleSet& set, Collected wanted) {
 }
 
 bool is_wanted(const Candidate& hit, Collected wanted) {
-    if (wanted == Collected::partly_there)
+    if (wanted == Collected::partly_there || wanted == Collected::closed)
         return true;
-    return is_there(hit) == (wanted == Collected::there);
+    return is_there(hit) != (wanted == Collected::through_glass);
 }
 
 // Whether it hides what lies behind.
@@ -119,7 +127,7 @@ void accept(const RTCFilterFunctionNArguments& args, const Ray& ray, const Candi
 
 // The triangle's intersection for who asked for all of them.
 void collect(const Candidate& found, const Query& query, const Ray& ray) {
-    if (!may_be_wanted(*found.set, query.collected))
+    if (!may_be_wanted(found, query))
         return;
     Candidate hit = found;
     resolve(hit, query, ray);
@@ -207,6 +215,10 @@ void occluded_filter(const RTCFilterFunctionNArguments* args) {
             continue;
         const Ray& ray = query.rays[RTCRayN_id(args->ray, args->N, n)];
         const TriangleId id = id_of(*args, set, args->N, n);
+        if (query.to_separate && (set.mixed || query.scene.role_of(id.instance) == map::Role::vegetation)) {
+            args->valid[n] = 0;
+            continue;
+        }
         if (!set.mixed) {
             const EmbreeHit offered = embree_hit(*args, set, args->N, n);
             const float most_m = offered.distance_m + query_slack(ray, offered.distance_m);

@@ -125,6 +125,9 @@ struct Closest {
 
 enum class Collected : std::uint8_t {
     there,          // what is there (is_there)
+    of_static,      // the same of what is not vegetation
+    of_spaces,      // the same, and what bounds a volume (ClosedParts)
+    closed,         // the latter alone
     through_glass,  // clear glass that is not there
     partly_there    // what chance decides of, whether it is there or not
 };
@@ -143,6 +146,8 @@ struct Query {
     // Occlusion: rays end on surfaces, which do not hide that end.
     bool to_surface = false;
     bool ends_on_back = false;  // said of one that ends on a back
+    // Occlusion: what separates spaces alone, which is static and there everywhere.
+    bool to_separate = false;
 
     Query(const Scene& asked, std::span<const Ray> asked_rays) : scene(asked), rays(asked_rays) {
         rtcInitIntersectContext(&base);

@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace drtv::trace {
@@ -129,63 +128,6 @@ Surface Scene::surface(const Hit& hit, float footprint_m) const {
     // What the hit knows already is not looked up again: in a large map that is far away in memory.
     const TrianglePoint point{*hit.set->map, *hit.set->primitive, hit.triangle, hit.u, hit.v};
     return surface_at(point, role, hit.front, {hit.double_area_m2, footprint_m});
-}
-
-void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
-    hits.clear();
-    // The line's ends are constants: were they taken from the scene, its rounding would depend on far
-    // objects.
-    const Ray line{glm::vec3(at, map::max_height_m), glm::vec3(0, 0, -1), 2 * map::max_height_m};
-    for (const Crossing& crossing : all_crossings(line, Collected::there)) {
-        const map::Object& object = map_->objects[object_index(crossing.id.instance)];
-        if (object.role == map::Role::vegetation)
-            continue;
-        const TriangleSet& set = set_of(crossing.id.instance, crossing.id.set);
-        const std::optional<double> z_m =
-            height_at(transformed(instances_[crossing.id.instance].world_from_object,
-                                  corners_of(set, crossing.id.triangle)),
-                      at);
-        if (!z_m)
-            continue;
-        const bool two_sided = is_two_sided(*set.material, object.role);
-        const bool front = meets_front(crossing.id.instance, crossing.at, line);
-        hits.push_back({static_cast<float>(*z_m), front || two_sided, !front || two_sided});
-    }
-    std::stable_sort(
-        hits.begin(), hits.end(), [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });
-}
-
-float Scene::distance_to_surface(const glm::vec3& point, float most_m) const {
-    struct Search {
-        const Scene& scene;
-        Ray from;  // for its start
-        glm::dvec3 point;
-        float nearest_m;
-    };
-    Search search{*this, {point, {}, 0}, point, most_m};
-    // Embree rounds: of two that are about as near it must offer both.
-    RTCPointQuery query{point.x, point.y, point.z, 0, most_m + query_slack(search.from, most_m)};
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    const auto look = [](RTCPointQueryFunctionArguments* found) {
-        auto& [scene, from, at, nearest_m] = *static_cast<Search*>(found->userPtr);
-        std::uint32_t instance = found->context->instID[0];
-        if (found->context->instStackSize == 0)
-            instance = scene.world_sets_[found->geomID - scene.map_->objects.size()]->instance;
-        else if (scene.instances_[instance].mesh->is_margin(found->geomID))
-            return false;
-        const auto distance_m = static_cast<float>(
-            distance_to(transformed(scene.instances_[instance].world_from_object,
-                                    corners_of(scene.set_of(instance, found->geomID), found->primID)),
-                        at));
-        if (!(distance_m < nearest_m))
-            return false;
-        nearest_m = distance_m;
-        found->query->radius = distance_m + query_slack(from, distance_m);
-        return true;
-    };
-    rtcPointQuery(handle_, &query, &context, look, &search);
-    return search.nearest_m;
 }
 
 }  // namespace drtv::trace

@@ -45,11 +45,22 @@ struct Hit {
     const TriangleSet* set = nullptr;  // of the triangle
 };
 
-// One crossing of a vertical line with a static object.
+// One crossing of a vertical line. What bounds a volume has one front, whatever its material says.
 struct ColumnHit {
     float z_m = 0;
     bool up_facing = false;    // seen from above it is a front, or it has two fronts
     bool down_facing = false;  // seen from below it is a front, or it has two fronts
+    bool wound_up = false;     // seen from above its corners are counter-clockwise
+    bool closed = false;       // it bounds a volume
+
+    auto operator<=>(const ColumnHit&) const = default;
+};
+
+// One crossing of a ray with a static object, or with what bounds a volume.
+struct SideHit {
+    float distance_m = 0;
+    bool front = false;  // the ray met the counter-clockwise side
+    bool sheet = false;  // it has two fronts and bounds no volume
 };
 
 // Square of the world, metres.
@@ -88,9 +99,27 @@ class Scene {
     // How many surfaces the ray crosses; a front and a back in one plane are one.
     [[nodiscard]] std::size_t crossings(const Ray& ray) const;
 
-    // All crossings of the vertical line at (x, y) with static objects, from the top down; `hits` is
-    // replaced.
+    // All crossings of the vertical line at (x, y) with static objects, from the top down; those at one
+    // height in an order of their own, not the map's. `hits` is replaced.
     void column(glm::vec2 at, std::vector<ColumnHit>& hits) const;
+    // The same, and with all that bounds volumes. The line leans: it passes 3 cm beside the point at most.
+    void column_of_spaces(glm::vec2 at, std::vector<ColumnHit>& hits) const;
+
+    // The object that the point is inside of: some closed part whose fronts look outwards has a winding
+    // number above 0 there. A closed part that looks inwards, as a room's walls do, takes away from those
+    // around it alone. Of several the one of the smallest bounds.
+    [[nodiscard]] std::optional<std::uint32_t> closed_around(const glm::vec3& point) const;
+
+    // All crossings with static objects and with what bounds a volume, in no particular order.
+    [[nodiscard]] std::vector<SideHit> sides_met(const Ray& ray) const;
+
+    // Whether something static that is there everywhere stands in the way: it separates what lies before and
+    // behind it. Leaves, glass and fences never do.
+    [[nodiscard]] bool separated(const Ray& ray) const;
+
+    // The static object of which some triangle comes within so much of the point; what alpha takes away
+    // counts as there. Of several the nearest, then the first of the map.
+    [[nodiscard]] std::optional<std::uint32_t> static_within(const glm::vec3& point, float most_m) const;
 
     // To the nearest surface of any kind, at most `most_m`; what alpha takes away counts as there.
     [[nodiscard]] float distance_to_surface(const glm::vec3& point, float most_m) const;
@@ -108,6 +137,7 @@ class Scene {
     }
     [[nodiscard]] const map::Map& map() const { return *map_; }
 
+    [[nodiscard]] map::Role role_of(std::uint32_t instance) const { return instances_[instance].role; }
     [[nodiscard]] const glm::mat4x3& world_from_object(std::uint32_t instance) const {
         return instances_[instance].world_from_object;
     }
@@ -129,9 +159,18 @@ class Scene {
     };
     Scene() = default;
     void add_instance(std::uint32_t object, const MeshBvh& bvh);
-    void add_in_world_space(std::uint32_t object, const Region& region, float reach_m);
+    void add_in_world_space(std::uint32_t object,
+                            std::shared_ptr<const ClosedParts> closed,
+                            const Region& region,
+                            float reach_m);
     [[nodiscard]] bool is_met(Query& query, const Ray& ray) const;
     [[nodiscard]] bool ends_behind(const Ray& ray) const;
+    void column(glm::vec2 at, const glm::vec3& down, Collected wanted, std::vector<ColumnHit>& hits) const;
+    struct Nearest;
+    [[nodiscard]] Nearest nearest_surface(const glm::vec3& point, float most_m, bool only_static) const;
+    struct Around;
+    void add_around(const Crossing& crossing, bool front, std::vector<Around>& parts) const;
+    [[nodiscard]] std::optional<std::uint32_t> closed_around(const Ray& line) const;
     [[nodiscard]] std::vector<Crossing> panes(const Ray& ray, Collected wanted, bool to_surface) const;
     [[nodiscard]] bool is_covered(const Crossing& back,
                                   const std::vector<Crossing>& crossings,
@@ -150,6 +189,7 @@ class Scene {
     // Of large objects, and of those that cannot be instances, what lies within reach, in world space. Their
     // geometry ids follow those of all instances.
     std::vector<std::unique_ptr<TriangleSet>> world_sets_;
+    std::vector<std::shared_ptr<const ClosedParts>> closed_;  // of their meshes
     map::Bounds bounds_;
     Kinds kinds_;
     RTCSceneTy* handle_ = nullptr;

@@ -47,7 +47,7 @@ std::shared_ptr<const Scene> Scene::build(MapGeometry& geometry, const Region& r
         scene->bounds_.extend(object.bounds.low);
         scene->bounds_.extend(object.bounds.high);
         if (is_large(object.bounds) || !geometry.shape_of(object)) {
-            scene->add_in_world_space(n, region, reach_m);
+            scene->add_in_world_space(n, geometry.closed_parts_of(object.mesh), region, reach_m);
             continue;
         }
         std::shared_ptr<const MeshBvh>& bvh = by_mesh[object.mesh];
@@ -78,7 +78,10 @@ void Scene::add_instance(std::uint32_t object, const MeshBvh& bvh) {
         {world_from_object, &bvh, object, map_->objects[object].role, is_mirroring(world_from_object)});
 }
 
-void Scene::add_in_world_space(std::uint32_t object, const Region& region, float reach_m) {
+void Scene::add_in_world_space(std::uint32_t object,
+                               std::shared_ptr<const ClosedParts> closed,
+                               const Region& region,
+                               float reach_m) {
     const map::Object& placed = map_->objects[object];
     const glm::dmat4x3 world_from_object(placed.world_from_object);
     const bool mirrored = is_mirroring(placed.world_from_object);
@@ -88,7 +91,7 @@ void Scene::add_in_world_space(std::uint32_t object, const Region& region, float
             bounds.extend(glm::vec3(world_from_object * glm::dvec4(primitive.positions[triangle[k]], 1)));
         return overlaps(bounds, region, reach_m);
     };
-    for (auto& set : triangle_sets(*map_, map_->meshes[placed.mesh], within_reach)) {
+    for (auto& set : triangle_sets(*map_, map_->meshes[placed.mesh], *closed, within_reach)) {
         set->instance = static_cast<std::uint32_t>(instances_.size());
         set->mirrored = mirrored;
         attach(device_->handle(),
@@ -98,6 +101,7 @@ void Scene::add_in_world_space(std::uint32_t object, const Region& region, float
                placed.world_from_object);
         world_sets_.push_back(std::move(set));
     }
+    closed_.push_back(std::move(closed));
     instances_.push_back({placed.world_from_object, nullptr, object, placed.role, mirrored});
 }
 

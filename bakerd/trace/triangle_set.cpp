@@ -13,6 +13,7 @@ namespace drtv::trace {
 
 std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
                                                         const map::Mesh& mesh,
+                                                        const ClosedParts& closed,
                                                         const WantedTriangle& wanted) {
     std::vector<std::unique_ptr<TriangleSet>> sets;
     for (std::uint32_t n = 0; n < mesh.primitives.size(); ++n) {
@@ -21,6 +22,7 @@ std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
         whole.map = &map;
         whole.primitive = &primitive;
         whole.material = &map.materials[primitive.material];
+        whole.closed = &closed;
         whole.primitive_index = n;
         TriangleSet mixed = whole;
         mixed.mixed = true;
@@ -49,7 +51,7 @@ std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
 Kinds kinds_of(std::span<const std::unique_ptr<TriangleSet>> sets) {
     Kinds kinds;
     for (const auto& set : sets)
-        kinds |= {set->material->transmission > 0, is_partly_there(*set->material)};
+        kinds |= {set->material->transmission > 0, is_partly_there(*set->material), !set->closed->empty()};
     return kinds;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bakerd/map/map.h"
+#include "bakerd/trace/closed_parts.h"
 #include "bakerd/trace/surface.h"
 #include "bakerd/trace/triangle.h"
 
@@ -24,6 +25,7 @@ struct TriangleSet {
     const map::Map* map = nullptr;
     const map::Primitive* primitive = nullptr;
     const map::Material* material = nullptr;
+    const ClosedParts* closed = nullptr;  // of its mesh
     std::uint32_t primitive_index = 0;    // in its mesh
     bool mixed = false;                   // there in parts: alpha is looked at, hit by hit
     std::uint32_t instance = UINT32_MAX;  // in its scene; of a set in world space alone
@@ -38,6 +40,10 @@ struct TriangleSet {
     }
     [[nodiscard]] std::uint32_t triangle_of(std::uint32_t n) const {
         return triangles.empty() ? n : triangles[n];
+    }
+    // Of the mesh's closed parts, the one that a triangle of the set belongs to, or none.
+    [[nodiscard]] std::uint32_t closed_part_of(std::uint32_t n) const {
+        return closed->part_of(primitive_index, triangle_of(n));
     }
 };
 
@@ -57,20 +63,24 @@ struct TriangleSet {
     return {*set.map, *set.primitive, set.triangle_of(triangle_of_set), at.u, at.v};
 }
 
-// The sets of a mesh, in the order of its primitives: of each first what is there everywhere, then what is
-// mixed. With `wanted`, of those triangles of a primitive alone for which it holds.
+// The sets of a mesh, whose closed parts outlive them, in the order of its primitives: of each first what is
+// there everywhere, then what is mixed. With `wanted`, of those triangles of a primitive alone for which it
+// holds.
 using WantedTriangle = std::function<bool(const map::Primitive&, const glm::uvec3&)>;
 [[nodiscard]] std::vector<std::unique_ptr<TriangleSet>> triangle_sets(const map::Map& map,
                                                                       const map::Mesh& mesh,
+                                                                      const ClosedParts& closed,
                                                                       const WantedTriangle& wanted = {});
 
 // What there is of a kind that asks for more than a hit.
 struct Kinds {
     bool glass = false;         // light goes straight through, in its colour
     bool partly_there = false;  // glass or blended
+    bool closed = false;        // bounds a volume
     Kinds& operator|=(const Kinds& other) {
         glass = glass || other.glass;
         partly_there = partly_there || other.partly_there;
+        closed = closed || other.closed;
         return *this;
     }
 };

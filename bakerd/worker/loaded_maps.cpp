@@ -23,7 +23,7 @@ MapSummary summary_of(const bake::World& world, const Digest& inventory) {
     MapSummary summary;
     summary.content = map.content;
     summary.inventory = inventory;
-    summary.sectors = world.sectors_with_ground();
+    summary.sectors = world.sectors();
     summary.object_count = static_cast<std::int64_t>(map.objects.size());
     summary.triangle_count = triangle_count(map);
     summary.warnings = map.warnings;

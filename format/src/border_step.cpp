@@ -64,6 +64,38 @@ std::size_t level_of(const Grid& grid, std::int64_t height_units) {
     return static_cast<std::size_t>(std::clamp<std::int64_t>(level, 0, grid_size - 1));
 }
 
+// How much of the sky is hidden in a horizontal direction, from the sky visibility around it.
+double hidden_sky(const std::array<float, basis_count>& sky, std::size_t axis, float sign) {
+    double hidden = 0;
+    double weights = 0;
+    for (std::size_t b = 0; b < basis_count; ++b) {
+        const float along = std::max(0.0f, sign * transfer_basis[b][axis]);
+        const double weight = static_cast<double>(along) * static_cast<double>(along);
+        hidden += weight * (1 - static_cast<double>(sky[b]));
+        weights += weight;
+    }
+    return weights > 0 ? hidden / weights : 0;
+}
+
+// Of the step between two probes, what an edge between them may bring: a ridge or wall hides sky from both,
+// on the side where it stands; a cliff from the lower one, no more than its height does.
+double explained_step(
+    const RegionSector& west, std::size_t p, const RegionSector& east, std::size_t q, std::size_t axis) {
+    const double west_hidden = hidden_sky(west.sky_visibility[p], axis, 1);
+    const double east_hidden = hidden_sky(east.sky_visibility[q], axis, -1);
+    const double by_ridge = std::min(west_hidden, east_hidden);
+    const std::array<std::int32_t, 3>& a = west.positions[p];
+    const std::array<std::int32_t, 3>& b = east.positions[q];
+    const auto difference = [&](std::size_t k) {
+        return static_cast<double>(a[k]) - static_cast<double>(b[k]);
+    };
+    const double height = std::abs(difference(2));
+    const double away = std::hypot(difference(0), difference(1));
+    const double of_lower = a[2] < b[2] ? west_hidden : east_hidden;
+    const double by_cliff = height > 0 ? std::min(of_lower, height / std::hypot(height, away)) : 0;
+    return std::max(by_ridge, by_cliff);
+}
+
 // From the last cells of `west` (or south) to the first of `east` (or north) at the same height.
 Mean steps_across(const RegionSector& west, const RegionSector& east, std::size_t axis) {
     const std::size_t to_last = stride_of(axis) * (grid_size - 1);
@@ -76,7 +108,12 @@ Mean steps_across(const RegionSector& west, const RegionSector& east, std::size_
         for (std::size_t k = 0; k < grid_size; ++k) {
             const std::size_t here = cells_of_level * z + along * k + to_last;
             const std::size_t next = cells_of_level * east_z + along * k;
-            add_step(light_at(west, here), light_at(east, next), steps);
+            const std::uint8_t p = west.grid.cells[here];
+            const std::uint8_t q = east.grid.cells[next];
+            if (p >= west.light.size() || q >= east.light.size())
+                continue;
+            const double step = step_between(west.light[p], east.light[q]);
+            steps.add(std::max(0.0, step - explained_step(west, p, east, q, axis)));
         }
     }
     return steps;

@@ -13,7 +13,7 @@ namespace drtv {
 [[nodiscard]] std::array<float, basis_count * channel_count> light_under_white_sky(const Probe& probe);
 
 struct BorderStep {
-    double across = 0;  // mean step between the probes of the cells on both sides
+    double across = 0;  // mean step between the probes of the cells on both sides, less what is explained
     double inside =
         0;  // mean step between cells side by side that name different probes; 0 where there are none
     std::size_t steps_inside = 0;

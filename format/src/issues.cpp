@@ -5,7 +5,7 @@
 namespace drtv {
 namespace {
 
-constexpr std::array<const Issue*, 42> issues = {
+constexpr std::array<const Issue*, 40> issues = {
     &issue::not_a_sector_file,
     &issue::unsupported_version,
     &issue::truncated,
@@ -36,12 +36,10 @@ constexpr std::array<const Issue*, 42> issues = {
     &issue::convergence_range,
     &issue::grid_reference,
     &issue::grid_no_probe,
-    &issue::grid_not_nearest,
     &issue::duplicate_position,
     &issue::local_source_count,
     &issue::local_source_duplicate,
     &issue::neighbour_source,
-    &issue::neighbour_distance,
     &issue::neighbour_sections,
     &issue::neighbour_step,
     &issue::set_duplicate,

@@ -5,9 +5,7 @@
 #include "layout.h"
 #include "sentence.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 
 namespace drtv {
@@ -51,67 +49,6 @@ void check_sources(const RegionMap& map, std::size_t n, RegionFindings& findings
     }
 }
 
-double squared_distance(const std::array<std::int32_t, 3>& a, const std::array<std::int32_t, 3>& b) {
-    double squared = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double d = static_cast<double>(a[axis]) - static_cast<double>(b[axis]);
-        squared += d * d;
-    }
-    return squared;
-}
-
-struct NearProbes {
-    std::size_t p;
-    std::size_t q;
-    double distance_units;
-};
-
-// The first two probes, neither placed by hand, that are nearer to each other.
-std::optional<NearProbes> find_nearer(const Border& border, double min_units) {
-    const auto& [first, second, a, b] = border;
-    for (std::size_t p = 0; p < a.positions.size(); ++p) {
-        if (a.kinds[p] == ProbeKind::manual)
-            continue;
-        for (std::size_t q = 0; q < b.positions.size(); ++q) {
-            if (b.kinds[q] == ProbeKind::manual)
-                continue;
-            const double squared = squared_distance(a.positions[p], b.positions[q]);
-            if (squared < min_units * min_units)
-                return NearProbes{p, q, std::sqrt(squared)};
-        }
-    }
-    return std::nullopt;
-}
-
-// One finding a border says it.
-void check_distance(const Border& border, RegionFindings& findings) {
-    const auto& [first, second, a, b] = border;
-    const float min_m = std::min(a.bake.min_distance_m, b.bake.min_distance_m);
-    // Heights are rounded to steps, so that a distance may have lost one of each.
-    const double min_units =
-        static_cast<double>(min_m) * position_units_per_m - a.position_step_units - b.position_step_units;
-    if (min_units <= 0)
-        return;
-    const auto near = find_nearer(border, min_units);
-    if (!near)
-        return;
-    const double distance_m = near->distance_units / position_units_per_m;
-    findings.add(first,
-                 {&issue::neighbour_distance,
-                  0,
-                  probe_path(near->p) + ".position",
-                  distance_m,
-                  sentence("stands ",
-                           distance_m,
-                           " m from probe ",
-                           near->q,
-                           " of sector ",
-                           text(coordinate_of(b)),
-                           ", and the minimal distance is ",
-                           min_m,
-                           " m")});
-}
-
 void check_sections(const Border& border, RegionFindings& findings) {
     const auto& [first, second, a, b] = border;
     if (a.has_local_transfer == b.has_local_transfer || a.positions.empty() || b.positions.empty())
@@ -143,12 +80,11 @@ void check_step(const Border& border, std::size_t axis, RegionFindings& findings
                            text(coordinate_of(b)),
                            " light steps by ",
                            step.across,
-                           " on average, inside the two by ",
+                           " on average more than heights and sky tell, inside the two by ",
                            step.inside)});
 }
 
 void check_border(const Border& border, const Coordinate& direction, RegionFindings& findings) {
-    check_distance(border, findings);
     const auto [di, dj] = direction;
     if (di != 0 && dj != 0)
         return;

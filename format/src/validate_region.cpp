@@ -133,6 +133,9 @@ ReadStatus read_region_sector(std::span<const std::uint8_t> bytes, RegionSector&
         region.positions.push_back(position_units(read, probe));
         region.kinds.push_back(probe.kind);
         region.light.push_back(light_under_white_sky(probe));
+        std::array<float, basis_count>& sky = region.sky_visibility.emplace_back();
+        for (std::size_t b = 0; b < basis_count; ++b)
+            sky[b] = decode_fixed(probe.sky_visibility[b], sky_visibility_scale);
     }
     region.grid = read.grid;
     region.has_local_transfer = read.local_transfer.has_value();

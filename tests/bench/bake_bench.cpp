@@ -55,7 +55,7 @@ bool prepare(const std::string& path) {
         return false;
     setup.emplace();
     setup->world = std::move(world);
-    setup->sectors = setup->world->sectors_with_ground();
+    setup->sectors = setup->world->sectors();
     const map::SectorCoordinate middle = setup->sector = setup->sectors[setup->sectors.size() / 2];
     bake::Settings few = setup->settings;
     few.rays = 16;

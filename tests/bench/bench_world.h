@@ -31,7 +31,7 @@ namespace drtv::bench {
 }
 
 [[nodiscard]] inline map::SectorCoordinate middle_sector(const bake::World& world) {
-    return world.sectors_with_ground()[world.sectors_with_ground().size() / 2];
+    return world.sectors()[world.sectors().size() / 2];
 }
 
 }  // namespace drtv::bench

@@ -54,12 +54,12 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
         return 1;
     const map::SectorCoordinate at = chosen.value_or(middle_sector(*world));
     bake::Settings settings = bake::preset("pc").value();
-    const auto scene = world->scene_for(at, bake::scene_distance_m(settings));
+    const auto scene = world->scene_for(at, bake::scene_distance_m(world->placement_tags(), settings));
     std::vector<std::shared_ptr<const bake::Placed>> around;
     std::vector<const bake::PlacedSector*> neighbours;
     for (int k = 0; k < 9; ++k) {
         const map::SectorCoordinate coordinate{at.i + k % 3 - 1, at.j + k / 3 - 1};
-        if (k == 4 || !world->has_ground(coordinate))
+        if (k == 4 || !world->has_sector(coordinate))
             continue;
         around.push_back(world->placed(coordinate, settings, *scene));
         neighbours.push_back(&**around.back());

@@ -96,7 +96,7 @@ int run(const std::string& path) {
         return 1;
     const map::SectorCoordinate at = middle_sector(*world);
     const bake::Settings settings;
-    const auto scene = world->scene_for(at, bake::scene_distance_m(settings));
+    const auto scene = world->scene_for(at, bake::scene_distance_m(world->placement_tags(), settings));
     const auto placed = world->placed(at, settings, *scene);
     const std::vector<placement::Position>& probes = (*placed)->positions;
     const auto truth = baked(*world, *scene, probes, joint(65536));

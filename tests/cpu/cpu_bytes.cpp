@@ -241,9 +241,7 @@ int main(int argc, char** argv) {
         if (!world)
             return 1;
         const std::vector<std::uint8_t> bytes = test::baked_bytes(
-            *world,
-            test::spread_over(world->sectors_with_ground(), static_cast<std::size_t>(std::atoi(argv[4]))),
-            false);
+            *world, test::spread_over(world->sectors(), static_cast<std::size_t>(std::atoi(argv[4]))), false);
         return test::write(argv[2], bytes.data(), bytes.size());
     }
     std::fprintf(stderr, "usage: cpu_bytes rays COUNT SEED OUT | bake OUT [MAP.glb SECTORS]\n");

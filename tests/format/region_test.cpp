@@ -93,15 +93,6 @@ const std::vector<Case> cases = {
          s[0].local_transfer = light_from(1, 16);
      },
      "0: NEIGHBOUR_SOURCE at 6308, local_transfer.sources[1]: is probe 16 of sector (1, 0), which has 16"},
-    {"ProbesTooNearAcrossTheBorder",
-     [](auto& s) {
-         s[0].probes[3].position[0] = 63 * 1024;
-         s[1].probes[0].position[0] = 2 * 1024;
-         for (Sector& sector : s)
-             fill_grid(sector, [](std::size_t) { return std::size_t{0}; });
-     },
-     "0: NEIGHBOUR_DISTANCE at 0, probe[3].position: stands 3.000000 m from probe 0 of sector (1, 0), and "
-     "the minimal distance is 6.000000 m"},
     {"LocalTransferOnOneSide",
      [](auto& s) {
          for (std::size_t n = 0; n < 8; ++n)
@@ -114,9 +105,11 @@ const std::vector<Case> cases = {
          for (Probe& probe : s[0].probes)
              probe.sky_visibility = {3277, 3277, 3277, 0};
      },
-     "0: NEIGHBOUR_STEP at 0, : towards sector (1, 0) light steps by 0.615040 on average, inside the two by "
+     "0: NEIGHBOUR_STEP at 0, : towards sector (1, 0) light steps by 0.615040 on average more than heights "
+     "and sky tell, inside the two by "
      "0.006762\n"
-     "0: NEIGHBOUR_STEP at 0, : towards sector (0, 1) light steps by 0.614705 on average, inside the two by "
+     "0: NEIGHBOUR_STEP at 0, : towards sector (0, 1) light steps by 0.614705 on average more than heights "
+     "and sky tell, inside the two by "
      "0.000000"},
 };
 
@@ -231,15 +224,34 @@ TEST(Region, HolesInScatteredIslandsAreFoundAtOnce) {
     EXPECT_EQ(missing, 100 + 1 + (7 * 7 - 3 * 3u));
 }
 
-// Manual probes stand where the artist wants them.
-TEST(Region, ManualProbesMayStandNear) {
+// Probes of both sides of the border between sectors 0 and 1 see a part of the sky.
+void hide_sky(std::vector<Sector>& sectors, const std::array<std::int16_t, 4>& from_west,
+              const std::array<std::int16_t, 4>& from_east) {
+    for (Probe& probe : sectors[0].probes)
+        probe.sky_visibility = from_west;
+    for (Probe& probe : sectors[1].probes)
+        probe.sky_visibility = from_east;
+}
+
+// Basis 2 looks east, 0 and 1 look west.
+TEST(Region, RidgeOnTheBorderIsNoStep) {
     std::vector<Sector> sectors = square(2);
-    sectors[0].probes[3].position[0] = 63 * 1024;
-    sectors[0].probes[3].kind = ProbeKind::manual;
-    sectors[1].probes[0].position[0] = 2 * 1024;
-    for (Sector& sector : sectors)
-        fill_grid(sector, [](std::size_t) { return std::size_t{0}; });
+    sectors.erase(sectors.begin() + 2, sectors.end());
+    hide_sky(sectors, {32767, 32767, 9000, 0}, {9000, 9000, 32767, 0});
     EXPECT_EQ(report_of(sectors), "");
+    // Its other side is open towards what should be a ridge.
+    hide_sky(sectors, {32767, 32767, 9000, 0}, {32767, 32767, 32767, 0});
+    EXPECT_NE(report_of(sectors), "");
+}
+
+TEST(Region, CliffOnTheBorderIsNoStepAsFarAsItsHeightGoes) {
+    for (const auto& [height_m, explains] : {std::pair(40, true), {2, false}}) {
+        std::vector<Sector> sectors = square(2);
+        sectors.erase(sectors.begin() + 2, sectors.end());
+        hide_sky(sectors, {32767, 32767, 6000, 0}, {32767, 32767, 32767, 0});
+        sectors[1].z_origin_units += height_m * 1024;
+        EXPECT_EQ(report_of(sectors).empty(), explains) << height_m << " m";
+    }
 }
 
 }  // namespace

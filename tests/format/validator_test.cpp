@@ -48,17 +48,6 @@ Bytes golden_1_2_with(const std::function<void(Sector&)>& change) {
     return changed(golden_sector_1_2(), change);
 }
 
-// Probes from west to east, so that the last is not among the nearest of the first cell.
-Bytes with_five_probes(const std::function<void(Sector&)>& change) {
-    return golden_with([&](Sector& s) {
-        s.probes.resize(5, s.probes[0]);
-        for (std::size_t p = 0; p < s.probes.size(); ++p)
-            s.probes[p].position = {static_cast<std::uint16_t>(10000 * p), 2048, 0};
-        fill_grid(s, [](std::size_t) { return std::size_t{0}; });
-        change(s);
-    });
-}
-
 // Seven probes, each a source for all others; towards a probe of a smaller index five times as much light as
 // back.
 Bytes one_way_light() {
@@ -163,8 +152,6 @@ const std::vector<Case> cases = {
           }); },
      "ENERGY at 368, probe[0].transfer.g[0][0]: bounce 0.227189 and sky 0.788675 under a sky of radiance 1 "
      "add up to more than 1"},
-    {"CellNamesAFarProbe", [] { return with_five_probes([](Sector& s) { s.grid.cells[0] = 4; }); },
-     "GRID_NOT_NEAREST at 896, grid.cells[0]: names probe 4, and four others are nearer to its centre"},
     {"InteriorWithoutATriangle",
      [] { return golden_1_2_with([](Sector& s) { s.interiors[0].triangles.pop_back(); }); },
      "INTERIOR_OPEN at 5328, interior[0]: has more triangles on one side of an edge at vertex 1 than on the "
@@ -203,7 +190,7 @@ const std::vector<Case> cases = {
      },
      "GRID_REFERENCE at 321, grid.cells[1]: names probe 0, the sector has 0"},
     {"GridCellEmpty", [] { return golden_with([](Sector& s) { s.grid.cells[0] = no_probe; }); },
-     "GRID_NO_PROBE at 544, grid.cells[0]: names no probe, the sector has 2"},
+     "GRID_NO_PROBE at 544, grid.cells[0]: names no probe, the sector has 2 that no interior names"},
     {"NoRays", [] { return golden_with([](Sector& s) { s.bake.rays = 0; }); },
      "SETTINGS_RANGE at 256, settings.rays: is not above 0"},
     {"NoReach", [] { return golden_with([](Sector& s) { s.bake.reach_m = 0; }); },
@@ -311,8 +298,31 @@ TEST(ValidatorIssues, CodesAreUniqueAndExplained) {
         EXPECT_FALSE(issue->meaning.empty());
         EXPECT_EQ(issue_of_code(issue->code), issue);
     }
-    EXPECT_FALSE(codes.contains("STRUCTURE")) << "retired, never to be used again";
-    EXPECT_EQ(issue_of_code("STRUCTURE"), nullptr);
+    for (const std::string_view retired : {"STRUCTURE", "GRID_NOT_NEAREST", "NEIGHBOUR_DISTANCE"}) {
+        EXPECT_FALSE(codes.contains(retired)) << "never to be used again";
+        EXPECT_EQ(issue_of_code(retired), nullptr);
+    }
+}
+
+TEST(Validator, CellsMayBeEmptyWhereInteriorsNameAllProbes) {
+    const auto emptied = [](bool all_named) {
+        return golden_1_2_with([&](Sector& s) {
+            s.grid.cells.fill(no_probe);
+            Interior interior = s.interiors[0];
+            s.interiors.clear();
+            for (std::size_t p = 0; p < s.probes.size(); ++p) {
+                interior.probe = static_cast<std::uint8_t>(p);
+                if (p > 0 || all_named)
+                    s.interiors.push_back(interior);
+            }
+        });
+    };
+    const auto reports_empty_cells = [](const Bytes& file) {
+        return std::ranges::any_of(validate_sector(file).findings,
+                                   [](const Finding& f) { return f.issue == &issue::grid_no_probe; });
+    };
+    EXPECT_FALSE(reports_empty_cells(emptied(true)));
+    EXPECT_TRUE(reports_empty_cells(emptied(false)));
 }
 
 TEST(Validator, FindingInAPackedSectionPointsAtItsFirstByte) {

@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             return drtv::map::FileBytes(data, data + size);
         });
     if (map) {
-        static_cast<void>(drtv::map::sectors_with_ground(*map));
+        static_cast<void>(drtv::map::sectors_of(*map));
     } else {
         const bool one_line = map.error().find('\n') == std::string::npos;
         if (!map.error().starts_with("x: ") || !one_line)

@@ -13,7 +13,7 @@ using map::SectorCoordinate;
 using Sectors = std::vector<SectorCoordinate>;
 
 tl::expected<Sectors, std::string> try_sectors(const GltfBuilder& b) {
-    return map::sectors_with_ground(expect_accepted(b.import()));
+    return map::sectors_of(expect_accepted(b.import()));
 }
 
 Sectors sectors_of(const GltfBuilder& b) {
@@ -118,9 +118,34 @@ TEST(Ground, CountsInstancesAndTransforms) {
     EXPECT_EQ(sectors_of(b), (Sectors{{5, -5}, {0, 0}}));
 }
 
-TEST(Ground, VegetationProbesAndVolumesAreNone) {
-    for (const char* role : {"vegetation", "ignore", "probe", "no_probes", "interior"})
+TEST(Ground, VegetationAndVolumesAreNone) {
+    for (const char* role : {"vegetation", "ignore", "no_probes", "interior"})
         EXPECT_TRUE(sectors_of(box({0, 0, 0}, {9, 9, 9}), role).empty()) << role;
+}
+
+// On a bridge's end, say, beyond the map's ground. On a border as it is placed, in whole units.
+TEST(Ground, AHandPlacedProbeMakesASector) {
+    GltfBuilder b;
+    b.place(floor_over(0, 0, 64, 64));
+    for (const glm::dvec3& at : {glm::dvec3(100, 5, -32), {-0.0001, 5, 64.0001}})
+        b.add_node({.translation = at, .role = "probe"});
+    EXPECT_EQ(sectors_of(b), (Sectors{{0, -1}, {0, 0}, {1, 0}}));
+}
+
+// A transform leaves the last digit wrong.
+TEST(Ground, RoundingAtABorderIsNoGroundBeyondIt) {
+    for (const double off : {-2e-5, 0.0, 2e-5}) {
+        for (const double at : {0.0, 6400.0}) {
+            GltfBuilder b;
+            const auto m = [](double metres) { return static_cast<float>(metres); };
+            b.place(floor_over(m(at + off), m(at - off), m(at + 64 + off), m(at + 64 - off)));
+            const auto n = static_cast<std::int32_t>(at / 64);
+            EXPECT_EQ(sectors_of(b), (Sectors{{n, n}})) << at << " + " << off;
+        }
+    }
+    GltfBuilder beyond;
+    beyond.place(floor_over(0, 0, 64.5, 64));
+    EXPECT_EQ(sectors_of(beyond), (Sectors{{0, 0}, {1, 0}}));
 }
 
 TEST(Ground, BeyondTheLimitsIsRefused) {
@@ -167,7 +192,7 @@ TEST(Ground, ManyHugeSliversEndSoon) {
     b.place(slivers);
     const map::Map map = expect_accepted(b.import());
     const auto start = std::chrono::steady_clock::now();
-    const auto sectors = map::sectors_with_ground(map);
+    const auto sectors = map::sectors_of(map);
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
     if (!sectors)
         expect_refused(sectors, {"sector"});

@@ -1,6 +1,8 @@
 #include "tests/placement/analytic_scene.h"
 
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <array>
 #include <cmath>
@@ -22,13 +24,20 @@ void AnalyticScene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
                      [](const ColumnHit& a, const ColumnHit& b) { return a.z_m > b.z_m; });
 }
 
-bool AnalyticScene::meets_back(const glm::vec3& origin, const glm::vec3& direction) const {
-    double closest = std::numeric_limits<double>::infinity();
-    bool back = false;
-    const auto shoot = [&](const Box& box) {
+bool AnalyticScene::is_in_box(const glm::vec3& point) const {
+    const auto holds = [&](const Box& box) {
+        return glm::all(glm::greaterThan(point, box.low)) && glm::all(glm::lessThan(point, box.high));
+    };
+    return std::ranges::any_of(boxes, holds) || std::ranges::any_of(solids, holds);
+}
+
+std::vector<placement::Side> AnalyticScene::sides(const glm::vec3& from, const glm::vec3& to) const {
+    std::vector<placement::Side> sides;
+    const double length = glm::length(glm::dvec3(to) - glm::dvec3(from));
+    const auto cross = [&](const Box& box) {
         double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
         for (int axis = 0; axis < 3; ++axis) {
-            const double o = origin[axis], d = direction[axis];
+            const double o = from[axis], d = (double{to[axis]} - o) / length;
             if (d == 0) {
                 if (o <= box.low[axis] || o >= box.high[axis])
                     return;
@@ -38,33 +47,38 @@ bool AnalyticScene::meets_back(const glm::vec3& origin, const glm::vec3& directi
             enter = std::max(enter, std::min(a, b));
             leave = std::min(leave, std::max(a, b));
         }
-        if (leave <= enter || leave <= 0)
+        if (leave <= enter)
             return;
-        const double distance = enter > 0 ? enter : leave;
-        if (distance >= closest)
-            return;
-        closest = distance;
-        back = enter <= 0;
+        if (enter >= 0 && enter <= length)
+            sides.push_back({static_cast<float>(enter), true, false});
+        if (leave >= 0 && leave <= length)
+            sides.push_back({static_cast<float>(leave), false, false});
     };
-    for (const Box& box : boxes)
-        shoot(box);
-    for (const Box& box : solids)
-        shoot(box);
-    return back;
+    std::ranges::for_each(boxes, cross);
+    std::ranges::for_each(solids, cross);
+    return sides;
 }
 
 placement::Surroundings AnalyticScene::surroundings() const {
-    return {[this](glm::vec2 at, std::vector<ColumnHit>& hits) { column(at, hits); },
-            [this](const glm::vec3& origin, std::span<const glm::vec3> directions) {
-                return static_cast<std::size_t>(std::ranges::count_if(
-                    directions, [&](const glm::vec3& direction) { return meets_back(origin, direction); }));
-            },
-            [](const glm::vec3&, const glm::vec3&) { return true; }};
+    placement::Surroundings surroundings;
+    surroundings.column = [this](glm::vec2 at, std::vector<ColumnHit>& hits) { column(at, hits); };
+    surroundings.column_of_spaces = surroundings.column;
+    surroundings.closed_around = [this](const glm::vec3& point) {
+        return is_in_box(point) ? std::optional<placement::Thing>(0) : std::nullopt;
+    };
+    surroundings.first_met = [](const glm::vec3&, std::span<const placement::Look> looks, std::size_t most) {
+        return placement::Met{0, std::min(looks.size(), most), std::nullopt};
+    };
+    surroundings.wall_within = [](const glm::vec3&, float) { return std::optional<placement::Thing>(); };
+    surroundings.sides = [this](const glm::vec3& a, const glm::vec3& b) { return sides(a, b); };
+    surroundings.separated = [this](const glm::vec3& a, const glm::vec3& b) { return !sees(a, b); };
+    surroundings.hidden = surroundings.separated;
+    return surroundings;
 }
 
 placement::Placement AnalyticScene::place(std::int32_t i, std::int32_t j, float min_distance_m) const {
-    auto placed =
-        placement::place_probes({i, j, vegetation, manual, no_probes}, surroundings(), {min_distance_m});
+    auto placed = placement::place_probes({i, j, vegetation, manual, no_probes, spacings}, surroundings(),
+                                          {min_distance_m});
     EXPECT_TRUE(placed.has_value()) << placed.error();
     return placed.value_or(placement::Placement{});
 }
@@ -73,6 +87,13 @@ AnalyticScene flat_ground(float z_m) {
     AnalyticScene scene;
     scene.floors = [z_m](glm::vec2, std::vector<ColumnHit>& hits) { hits.push_back({z_m, true, false}); };
     return scene;
+}
+
+std::vector<placement::ManualProbe> manual_at(const std::vector<glm::dvec3>& places) {
+    std::vector<placement::ManualProbe> probes;
+    for (const glm::dvec3& place : places)
+        probes.push_back({place, {}});
+    return probes;
 }
 
 placement::ClosedVolume box_volume(const glm::dvec3& low, const glm::dvec3& high) {

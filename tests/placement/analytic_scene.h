@@ -24,20 +24,27 @@ struct AnalyticScene {
     std::vector<Box> boxes;   // closed solids, met by columns and rays
     std::vector<Box> solids;  // met by rays only: what a column cannot know about
     std::vector<Box> vegetation;
-    std::vector<glm::dvec3> manual;
+    std::vector<placement::ManualProbe> manual;
     std::vector<placement::ClosedVolume> no_probes;
+    std::vector<placement::SpacingVolume> spacings;
 
     [[nodiscard]] placement::Surroundings surroundings() const;
     // REQUIRES: placement succeeds.
     [[nodiscard]] placement::Placement place(std::int32_t i, std::int32_t j, float min_distance_m = 6) const;
 
     void column(glm::vec2 at, std::vector<ColumnHit>& hits) const;
-    [[nodiscard]] bool meets_back(const glm::vec3& origin, const glm::vec3& direction) const;
+    [[nodiscard]] bool is_in_box(const glm::vec3& point) const;
+    // Where the way enters and leaves boxes.
+    [[nodiscard]] std::vector<placement::Side> sides(const glm::vec3& from, const glm::vec3& to) const;
+    [[nodiscard]] bool sees(const glm::vec3& from, const glm::vec3& to) const {
+        return sides(from, to).empty();
+    }
 };
 
 // Ground whose front is up.
 [[nodiscard]] AnalyticScene flat_ground(float z_m = 0);
 
+[[nodiscard]] std::vector<placement::ManualProbe> manual_at(const std::vector<glm::dvec3>& places);
 [[nodiscard]] placement::ClosedVolume box_volume(const glm::dvec3& low, const glm::dvec3& high);
 
 [[nodiscard]] std::int64_t squared_distance(const Position& a, const Position& b);

@@ -35,17 +35,19 @@ class GlobalDecision {
   public:
     GlobalDecision(const AnalyticScene& scene, glm::ivec2 low_m, glm::ivec2 high_m, double distance_m)
         : scene_(scene), reach_units_(distance_m * 1024), least_(squared_units(distance_m)) {
-        for (const glm::dvec3& m : scene.manual)
+        for (const placement::ManualProbe& probe : scene.manual) {
+            const glm::dvec3& m = probe.position;
             manual_.emplace_back(std::lround(m.x * 1024), std::lround(m.y * 1024), std::lround(m.z * 1024));
-        propose(4, 0, low_m, high_m, distance_m);
-        propose(8, 1, low_m, high_m, distance_m);
+        }
+        propose(std::min(4.0, distance_m), 0, low_m, high_m, distance_m);
+        propose(std::min(8.0, 2 * distance_m), 1, low_m, high_m, distance_m);
         kept_.resize(proposals_.size());
         places_.resize(proposals_.size());
         higher_.resize(proposals_.size());
         for (std::size_t n = 0; n < proposals_.size(); ++n) {
             for (std::size_t m = 0; m < proposals_.size(); ++m) {
                 if (proposals_[m] < proposals_[n] &&
-                    squared_distance(proposals_[m].position, proposals_[n].position) < least_)
+                    take_place(proposals_[m].position, proposals_[n].position))
                     higher_[n].push_back(m);
             }
         }
@@ -62,7 +64,7 @@ class GlobalDecision {
             const std::optional<Position> place = free_place(n);
             if (!place || near_manual(*place))
                 continue;
-            const auto near = [&](const Position& other) { return squared_distance(*place, other) < least_; };
+            const auto near = [&](const Position& other) { return take_place(*place, other); };
             bool free = std::none_of(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(standing),
                                      [&](const PlacedProbe& p) { return near(p.position); });
             for (std::size_t m = 0; free && m < proposals_.size(); ++m)
@@ -77,29 +79,35 @@ class GlobalDecision {
     unsigned moved = 0;
 
   private:
-    void propose(std::int32_t lattice_m, int kind, glm::ivec2 low_m, glm::ivec2 high_m, double distance_m) {
+    bool take_place(const Position& a, const Position& b) const {
+        return squared_distance(a, b) < least_ && scene_.sees(glm::vec3(a) / 1024.0f, glm::vec3(b) / 1024.0f);
+    }
+
+    void propose(double lattice_m, int kind, glm::ivec2 low_m, glm::ivec2 high_m, double distance_m) {
         unsigned stride = 1;
-        while (stride * static_cast<unsigned>(lattice_m) < distance_m)
+        while (stride * lattice_m < distance_m)
             stride *= 2;
-        for (std::int32_t y = low_m.y + lattice_m / 2; y < high_m.y; y += lattice_m) {
-            for (std::int32_t x = low_m.x + lattice_m / 2; x < high_m.x; x += lattice_m) {
-                // 1024 lattice squares more do not change the class and keep the numbers positive.
-                const unsigned a = static_cast<unsigned>((x - lattice_m / 2) / lattice_m + 1024),
-                               b = static_cast<unsigned>((y - lattice_m / 2) / lattice_m + 1024);
+        const auto lattice = static_cast<std::int32_t>(lattice_m);  // whole metres in these tests
+        for (std::int32_t b = low_m.y / lattice - 1; b * lattice < high_m.y; ++b) {
+            for (std::int32_t a = low_m.x / lattice - 1; a * lattice < high_m.x; ++a) {
+                const Position at(a * lattice * 1024 + lattice * 512, b * lattice * 1024 + lattice * 512, 0);
                 unsigned level = 0;
-                for (double z_m : kind == 0 ? ground(x, y) : tops(x, y)) {
-                    proposals_.push_back(
-                        {Position(x * 1024, y * 1024, static_cast<int>(std::lround(z_m * 1024))), kind,
-                         bayer(a % stride, b % stride, stride), level++});
+                for (double z_m : kind == 0 ? ground(at) : tops(at)) {
+                    // 1024 lattice squares more do not change the class and keep the numbers positive.
+                    proposals_.push_back({Position(at.x, at.y, static_cast<int>(std::lround(z_m * 1024))),
+                                          kind,
+                                          bayer(static_cast<unsigned>(a + 1024) % stride,
+                                                static_cast<unsigned>(b + 1024) % stride, stride),
+                                          level++});
                 }
             }
         }
     }
 
     // Heights of probes over a point, from the bottom.
-    std::vector<double> ground(std::int32_t x, std::int32_t y) {
+    std::vector<double> ground(const Position& at) {
         std::vector<ColumnHit> hits;
-        scene_.column({x, y}, hits);
+        scene_.column(glm::vec2(at) / 1024.0f, hits);
         std::vector<double> heights;
         for (std::size_t n = hits.size(); n-- > 0;) {
             if (!hits[n].up_facing)
@@ -112,11 +120,11 @@ class GlobalDecision {
         return heights;
     }
 
-    std::vector<double> tops(std::int32_t x, std::int32_t y) {
+    std::vector<double> tops(const Position& at) {
+        const float x = static_cast<float>(at.x) / 1024, y = static_cast<float>(at.y) / 1024;
         std::vector<const Box*> here;
         for (const Box& b : scene_.vegetation) {
-            if (b.low.x <= static_cast<float>(x) && static_cast<float>(x) <= b.high.x &&
-                b.low.y <= static_cast<float>(y) && static_cast<float>(y) <= b.high.y)
+            if (b.low.x <= x && x <= b.high.x && b.low.y <= y && y <= b.high.y)
                 here.push_back(&b);
         }
         std::vector<double> heights;
@@ -133,7 +141,7 @@ class GlobalDecision {
 
     bool near_manual(const Position& p) const {
         return std::any_of(manual_.begin(), manual_.end(),
-                           [&](const Position& m) { return squared_distance(p, m) < least_; });
+                           [&](const Position& m) { return take_place(p, m); });
     }
 
     bool removed(const Position& p) const {
@@ -141,26 +149,26 @@ class GlobalDecision {
                            [&](const auto& v) { return v.contains(glm::dvec3(p) / 1024.0); });
     }
 
-    // Of the 26 directions more than a quarter, 6.5, meet backs.
-    bool in_solid(const Position& p) const {
-        int backs = 0;
-        for (const glm::vec3& d : directions())
-            backs += scene_.meets_back(glm::vec3(p) / 1024.0f, d) ? 1 : 0;
-        return backs >= 7;
-    }
+    bool in_solid(const Position& p) const { return scene_.is_in_box(glm::vec3(p) / 1024.0f); }
 
+    // Not down.
     static std::vector<glm::vec3> directions() {
         std::vector<glm::vec3> result;
         const auto add = [&](int x, int y, int z) {
             result.push_back(glm::vec3(x, y, z) / std::sqrt(static_cast<float>(x * x + y * y + z * z)));
         };
-        for (int z : {1, 0, -1}) {
-            if (z != 0)
-                add(0, 0, z);
+        add(0, 0, 1);
+        for (int z : {1, 0}) {
             add(1, 0, z), add(-1, 0, z), add(0, 1, z), add(0, -1, z);
             add(1, 1, z), add(-1, 1, z), add(1, -1, z), add(-1, -1, z);
         }
         return result;
+    }
+
+    // Into nothing on the way.
+    bool leads_out(const Position& from, const Position& to) const {
+        const auto sides = scene_.sides(glm::vec3(from) / 1024.0f, glm::vec3(to) / 1024.0f);
+        return std::ranges::none_of(sides, [](const placement::Side& side) { return side.front; });
     }
 
     bool undisturbed(std::size_t n) {
@@ -193,7 +201,8 @@ class GlobalDecision {
                 const auto same = [](int a, int b) {
                     return std::floor(a / double{sector_units}) == std::floor(b / double{sector_units});
                 };
-                if (same(place.x, from.x) && same(place.y, from.y) && !removed(place) && !in_solid(place))
+                if (same(place.x, from.x) && same(place.y, from.y) && !removed(place) && !in_solid(place) &&
+                    leads_out(from, place))
                     return place;
             }
         }
@@ -247,9 +256,10 @@ AnalyticScene random_scene(unsigned seed, float holes) {
     for (int n = 0; n < 60; ++n)
         scene.vegetation.push_back(box(14, -8, 10));
     for (int n = 0; n < 25; ++n)
-        scene.manual.emplace_back(between(low_m, high_m), between(low_m, high_m), between(-8, 10));
+        scene.manual.push_back({{between(low_m, high_m), between(low_m, high_m), between(-8, 10)}, {}});
     // On borders and corners, where "whose is it" is asked.
-    scene.manual.insert(scene.manual.end(), {{0, 0, 3}, {64, 20, 0}, {0, 33, 2}, {64, 64, 1}});
+    for (const glm::dvec3& at : {glm::dvec3(0, 0, 3), {64, 20, 0}, {0, 33, 2}, {64, 64, 1}})
+        scene.manual.push_back({at, {}});
     scene.no_probes = {box_volume({-9, 20, -20}, {11, 41, 20}), box_volume({50, 55, -20}, {81, 71, 3})};
     return scene;
 }
@@ -261,7 +271,7 @@ TEST_P(SectorBorder, SectorsOneByOneEqualOneGlobalDecision) {
     unsigned moved = 0;
     for (unsigned seed = 1; seed <= 4; ++seed) {
         const AnalyticScene scene =
-            random_scene(seed, distance_m < 4 ? 0.5f : 0.08f * static_cast<float>(seed - 1));
+            random_scene(seed, distance_m < 4 ? 0.75f : 0.08f * static_cast<float>(seed - 1));
         std::vector<PlacedProbe> all;
         for (std::int32_t j = -1; j <= 1; ++j) {
             for (std::int32_t i = -1; i <= 1; ++i) {
@@ -276,8 +286,6 @@ TEST_P(SectorBorder, SectorsOneByOneEqualOneGlobalDecision) {
                 all.insert(all.end(), placed.probes.begin(), placed.probes.end());
             }
         }
-        EXPECT_GE(least_squared_distance(all), squared_units(distance_m)) << "seed " << seed;
-
         GlobalDecision global(scene, glm::ivec2(low_m), glm::ivec2(high_m), distance_m);
         std::erase_if(all, [](const PlacedProbe& p) { return p.kind == Kind::manual; });
         EXPECT_EQ(sorted_keys(all), sorted_keys(global.run())) << "seed " << seed;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
+#include <algorithm>
 #include <random>
+#include <string>
 #include <thread>
 
 namespace drtv::test {
@@ -97,6 +100,69 @@ TEST(ClosedVolume, SurfaceIsMergedAndTurnedOutwards) {
         EXPECT_NEAR(six_volumes(volume), 1, 1e-12);
     }
 }
+
+// Twelve triangles of a box, each with vertices of its own.
+void add_box(const glm::dvec3& low, const glm::dvec3& high, bool inwards, std::vector<glm::dvec3>& positions,
+             std::vector<glm::uvec3>& triangles) {
+    const ClosedVolume box = box_volume(low, high);
+    for (const glm::uvec3& t : box.triangles()) {
+        const auto first = static_cast<unsigned>(positions.size());
+        for (glm::length_t k = 0; k < 3; ++k)
+            positions.push_back(box.vertices()[t[k]]);
+        triangles.emplace_back(first, first + (inwards ? 2 : 1), first + (inwards ? 1 : 2));
+    }
+}
+
+struct BoxPair {
+    const char* name;
+    glm::dvec3 low_a, high_a, low_b, high_b;
+};
+
+class TwoBoxes : public testing::TestWithParam<BoxPair> {};
+
+// Whatever they are wound like, one by one.
+TEST_P(TwoBoxes, AreOneVolumeTogether) {
+    const auto& [name, low_a, high_a, low_b, high_b] = GetParam();
+    const auto in_box = [](const glm::dvec3& p, const glm::dvec3& low, const glm::dvec3& high) {
+        return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, high));
+    };
+    for (unsigned turned = 0; turned < 4; ++turned) {
+        std::vector<glm::dvec3> positions;
+        std::vector<glm::uvec3> triangles;
+        add_box(low_a, high_a, (turned & 1) != 0, positions, triangles);
+        add_box(low_b, high_b, (turned & 2) != 0, positions, triangles);
+        const auto made = ClosedVolume::make(name, positions, triangles);
+        if (!made && turned % 3 != 0)
+            continue;  // a shared wall wound two ways has no one inside
+        ASSERT_TRUE(made.has_value()) << made.error();
+        const ClosedVolume& volume = *made;
+        std::mt19937 random(turned);
+        int wrong = 0;
+        for (int n = 0; n < 3000; ++n) {
+            // Half of them on faces, edges and corners.
+            glm::dvec3 p(glm::uvec3(random() % 15, random() % 15, random() % 9));
+            p -= glm::dvec3(1);
+            if (n % 2 != 0)
+                p += glm::dvec3(glm::uvec3(random() % 997, random() % 997, random() % 997)) / 1000.0;
+            wrong += volume.contains(p) != (in_box(p, low_a, high_a) || in_box(p, low_b, high_b)) ? 1 : 0;
+        }
+        EXPECT_EQ(wrong, 0) << name << ", wound " << turned;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ClosedVolume, TwoBoxes,
+    testing::Values(BoxPair{"overlapping", {0, 0, 0}, {8, 8, 6}, {4, 4, 0}, {12, 12, 6}},
+                    BoxPair{"one in the other", {0, 0, 0}, {12, 12, 7}, {3, 3, 2}, {9, 9, 5}},
+                    BoxPair{"at an edge", {0, 0, 0}, {6, 6, 6}, {6, 6, 0}, {12, 12, 6}},
+                    BoxPair{"at a corner", {0, 0, 0}, {6, 6, 3}, {6, 6, 3}, {12, 12, 6}},
+                    BoxPair{"at a wall", {0, 0, 0}, {6, 6, 6}, {6, 0, 0}, {12, 6, 6}},
+                    BoxPair{"the same", {0, 0, 0}, {6, 6, 6}, {0, 0, 0}, {6, 6, 6}}),
+    [](const auto& pair) {
+        std::string name = pair.param.name;
+        std::ranges::replace(name, ' ', '_');
+        return name;
+    });
 
 TEST(ClosedVolume, ThreadsAgreeWithTheBoxFormula) {
     const ClosedVolume volume = box_volume({-3, 2, 1}, {4, 9, 3});

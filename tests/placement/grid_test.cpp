@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 namespace drtv::test {
@@ -12,35 +13,76 @@ namespace {
 using placement::ProbeGrid;
 using Sees = std::function<bool(const glm::vec3&, const glm::vec3&)>;
 
-ProbeGrid build(std::int32_t i, std::int32_t j, const std::vector<Position>& probes, const Sees& sees) {
-    placement::Surroundings surroundings;
-    surroundings.sees = sees;
-    return placement::build_grid(i, j, probes, surroundings);
+std::vector<placement::GridProbe> grid_probes(const std::vector<Position>& positions) {
+    std::vector<placement::GridProbe> probes;
+    for (const Position& position : positions)
+        probes.push_back({position, {}});
+    return probes;
 }
 
-// Cell by cell: of the four nearest by (distance, index) the first that is seen, else the nearest.
+// Empty space but for what hides.
+placement::Surroundings space(const Sees& sees) {
+    placement::Surroundings surroundings;
+    surroundings.column_of_spaces = [](glm::vec2, std::vector<ColumnHit>& hits) { hits.clear(); };
+    surroundings.closed_around = [](const glm::vec3&) { return std::optional<placement::Thing>(); };
+    surroundings.first_met = [](const glm::vec3&, std::span<const placement::Look>, std::size_t) {
+        return placement::Met{0, 1, std::nullopt};
+    };
+    surroundings.hidden = [sees](const glm::vec3& a, const glm::vec3& b) { return !sees(a, b); };
+    surroundings.separated = surroundings.hidden;
+    return surroundings;
+}
+
+ProbeGrid build(std::int32_t i, std::int32_t j, const std::vector<Position>& probes, const Sees& sees) {
+    return placement::build_grid(i, j, grid_probes(probes), space(sees));
+}
+
+std::size_t cell_at(const ProbeGrid& grid, const glm::vec3& point) {
+    const auto height = static_cast<float>(grid.cell_height_units) / 1024;
+    const auto z =
+        static_cast<std::size_t>((point.z - static_cast<float>(grid.z_origin_units) / 1024) / height);
+    return static_cast<std::size_t>(point.x / 4) + 16 * static_cast<std::size_t>(point.y / 4) + 256 * z;
+}
+
+// The nearest, by distance from the centre and index, that at least two of the four points see, else the one
+// that most see, else the nearest.
+int expected_for(int cell, const ProbeGrid& grid, std::int32_t i, std::int32_t j,
+                 const std::vector<Position>& probes, const Sees& sees) {
+    const std::int32_t height = static_cast<std::int32_t>(grid.cell_height_units);
+    const Position corner(i * 65536 + (cell % 16) * 4096, j * 65536 + (cell / 16 % 16) * 4096,
+                          grid.z_origin_units + (cell / 256) * height);
+    std::array<Position, 4> points = {Position(1024, 1024, height / 4),
+                                      {3072, 3072, height / 4},
+                                      {3072, 1024, height - height / 4},
+                                      {1024, 3072, height - height / 4}};
+    std::vector<std::tuple<std::int64_t, int>> order;
+    for (std::size_t p = 0; p < probes.size(); ++p)
+        order.emplace_back(squared_distance(corner + Position(2048, 2048, height / 2), probes[p]),
+                           static_cast<int>(p));
+    std::sort(order.begin(), order.end());
+    int best = std::get<1>(order[0]);
+    auto most = std::ptrdiff_t{0};
+    for (const auto& [distance, p] : order) {
+        const auto seeing = std::count_if(points.begin(), points.end(), [&](const Position& point) {
+            return sees(placement::metres(corner + point),
+                        placement::metres(probes[static_cast<std::size_t>(p)]));
+        });
+        if (seeing >= 2)
+            return p;
+        if (seeing > most) {
+            most = seeing;
+            best = p;
+        }
+    }
+    return best;
+}
+
 void expect_brute_force(std::int32_t i, std::int32_t j, const std::vector<Position>& probes,
                         const Sees& sees) {
     const ProbeGrid grid = build(i, j, probes, sees);
-    const std::int32_t height = static_cast<std::int32_t>(grid.cell_height_units);
     int wrong = 0;
-    for (int n = 0; n < 4096; ++n) {
-        const Position centre(i * 65536 + (n % 16) * 4096 + 2048, j * 65536 + (n / 16 % 16) * 4096 + 2048,
-                              grid.z_origin_units + (n / 256) * height + height / 2);
-        std::vector<std::pair<std::int64_t, int>> order;
-        for (std::size_t p = 0; p < probes.size(); ++p)
-            order.emplace_back(squared_distance(centre, probes[p]), static_cast<int>(p));
-        std::sort(order.begin(), order.end());
-        int expected = order[0].second;
-        for (std::size_t k = 0; k < std::min<std::size_t>(4, order.size()); ++k) {
-            if (!sees(placement::metres(centre),
-                      placement::metres(probes[static_cast<std::size_t>(order[k].second)])))
-                continue;
-            expected = order[k].second;
-            break;
-        }
-        wrong += grid.cells[static_cast<std::size_t>(n)] != expected ? 1 : 0;
-    }
+    for (int n = 0; n < 4096; ++n)
+        wrong += grid.cells[static_cast<std::size_t>(n)] != expected_for(n, grid, i, j, probes, sees) ? 1 : 0;
     EXPECT_EQ(wrong, 0) << probes.size() << " probes in sector " << i << ", " << j;
 }
 
@@ -50,9 +92,14 @@ bool everything(const glm::vec3&, const glm::vec3&) {
 bool nothing(const glm::vec3&, const glm::vec3&) {
     return false;
 }
-// A wall at x = 20 (modulo the sector), and a floor at z = 3.
+// A wall at x = 21 (modulo the sector), through the middle of no cell and the quarter of one, and a floor.
 bool past_a_wall(const glm::vec3& a, const glm::vec3& b) {
-    return (a.x < 20) == (b.x < 20) && (a.z < 3) == (b.z < 3);
+    return (a.x < 21.5f) == (b.x < 21.5f) && (a.z < 3) == (b.z < 3);
+}
+// Every place sees a third of the others.
+bool at_random(const glm::vec3& a, const glm::vec3& b) {
+    return static_cast<int>(std::floor(a.x * 7 + a.y * 13 + a.z * 29 + b.x * 31 + b.y * 37 + b.z * 41)) % 3 ==
+           0;
 }
 
 TEST(ProbeGrid, AgreesWithBruteForce) {
@@ -67,6 +114,7 @@ TEST(ProbeGrid, AgreesWithBruteForce) {
             expect_brute_force(i, j, probes, everything);
             expect_brute_force(i, j, probes, nothing);
             expect_brute_force(i, j, probes, past_a_wall);
+            expect_brute_force(i, j, probes, at_random);
         }
     }
 }
@@ -90,15 +138,63 @@ TEST(ProbeGrid, AllProbesAtOnePlaceGoToTheFirst) {
     EXPECT_TRUE(std::all_of(grid.cells.begin(), grid.cells.end(), [](std::uint8_t c) { return c == 0; }));
 }
 
-TEST(ProbeGrid, CellPrefersAProbeItsCentreSees) {
-    // The nearest stands behind the wall at x = 20.
-    const std::vector<Position> probes = {{20 * 1024 + 512, 2048, 1024}, {10 * 1024, 2048, 1024}};
+TEST(ProbeGrid, EveryProbeIsAskedNotTheNearestFour) {
+    // Five stand behind the wall, and the one on this side far away.
+    std::vector<Position> probes(5, Position(24 * 1024, 2048, 1024));
+    probes.emplace_back(2048, 60 * 1024, 1024);
     const ProbeGrid grid = build(0, 0, probes, past_a_wall);
-    const auto low = static_cast<std::size_t>((1024 - grid.z_origin_units) /
-                                              static_cast<std::int32_t>(grid.cell_height_units));
-    EXPECT_EQ(grid.cells[4 + 256 * low], 1);  // x from 16 to 20
-    EXPECT_EQ(grid.cells[5 + 256 * low], 0);
-    EXPECT_EQ(build(0, 0, probes, everything).cells[4 + 256 * low], 0);
+    EXPECT_EQ(grid.cells[cell_at(grid, {18, 2, 1})], 5);
+    EXPECT_EQ(grid.cells[cell_at(grid, {26, 2, 1})], 0);
+}
+
+TEST(ProbeGrid, CellsThatSeeNoneAreCounted) {
+    const std::vector<Position> probes = {{2048, 2048, 1024}};
+    EXPECT_EQ(build(0, 0, probes, nothing).blind_cells, 4096u);
+    EXPECT_EQ(build(0, 0, probes, everything).blind_cells, 0u);
+    EXPECT_EQ(build(0, 0, probes, everything).buried_cells, 0u);
+}
+
+TEST(ProbeGrid, ACellThatSeesNoneTakesOneOfItsOwnSpace) {
+    // Leaves everywhere hide all; the wall separates.
+    placement::Surroundings surroundings = space(nothing);
+    surroundings.separated = [](const glm::vec3& a, const glm::vec3& b) { return !past_a_wall(a, b); };
+    const ProbeGrid grid = placement::build_grid(
+        0, 0, grid_probes({{22 * 1024, 2048, 1024}, {2048, 60 * 1024, 1024}}), surroundings);
+    EXPECT_EQ(grid.cells[cell_at(grid, {18, 2, 1})], 1);
+    EXPECT_EQ(grid.blind_cells, 4096u);
+}
+
+// Ground at z = 3.1, its front up, and nothing below.
+TEST(ProbeGrid, APointInTheGroundIsRaisedToItsSurface) {
+    const auto over_ground = [](const glm::vec3& a, const glm::vec3& b) {
+        return (a.z < 3.1f) == (b.z < 3.1f);
+    };
+    placement::Surroundings surroundings = space(over_ground);
+    surroundings.column_of_spaces = [](glm::vec2, std::vector<ColumnHit>& hits) {
+        hits = {{3.1f, true, false, true, false}};
+    };
+    // One lies underground; were it not, it would be the nearest to the cells at z = 0 to 4 m.
+    const ProbeGrid grid =
+        placement::build_grid(0, 0, grid_probes({{2048, 2048, 2048}, {2048, 2048, 4200}}), surroundings);
+    const auto at_surface = cell_at(grid, {2, 2, 3.15f});
+    EXPECT_EQ(grid.cells[at_surface], 1) << "the part of the cell over the ground sees probe 1";
+    EXPECT_GT(grid.buried_cells, 256u);
+    EXPECT_EQ(grid.blind_cells, 0u);
+}
+
+TEST(ProbeGrid, AnInteriorsProbeIsNamedInsideOfItAlone) {
+    const placement::ClosedVolume house = box_volume({8, 8, -9}, {20, 20, 9});
+    std::vector<placement::GridProbe> probes =
+        grid_probes({{14 * 1024, 14 * 1024, 1024}, {50 * 1024, 50 * 1024, 1024}});
+    probes[0].interiors = {&house};
+    const ProbeGrid grid = placement::build_grid(0, 0, probes, space(everything));
+    EXPECT_EQ(grid.cells[cell_at(grid, {14, 14, 1})], 0);
+    EXPECT_EQ(grid.cells[cell_at(grid, {6, 14, 1})], 1);
+    EXPECT_EQ(grid.cells[cell_at(grid, {22, 14, 1})], 1);
+    probes.pop_back();
+    const ProbeGrid alone = placement::build_grid(0, 0, probes, space(everything));
+    EXPECT_EQ(alone.cells[cell_at(alone, {14, 14, 1})], 0);
+    EXPECT_EQ(alone.cells[cell_at(alone, {6, 14, 1})], placement::no_probe) << "nothing lights it";
 }
 
 TEST(ProbeGrid, NoProbesGiveAGridOfNone) {

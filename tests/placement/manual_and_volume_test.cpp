@@ -14,19 +14,20 @@ TEST(ManualProbe, StaysExactlyWhereItIsAndWins) {
     scene.boxes = {{{30, 30, -2}, {40, 40, 20}}};
     scene.no_probes = {box_volume({0, 0, -10}, {64, 64, 100})};
     // In a solid, in a volume, nearer than the minimal distance to each other: all no matter.
-    scene.manual = {{35.25, 35.5, 4}, {35.25, 35.5, 4.125}, {5 + 1.0 / 1024, 6, 1}, {63.9990234375, 0, 1}};
+    scene.manual =
+        manual_at({{35.25, 35.5, 4}, {35.25, 35.5, 4.125}, {5 + 1.0 / 1024, 6, 1}, {63.9990234375, 0, 1}});
     const placement::Placement placed = scene.place(0, 0);
     ASSERT_EQ(placed.probes.size(), 4u);
-    for (const glm::dvec3& m : scene.manual) {
+    for (const placement::ManualProbe& m : scene.manual) {
         EXPECT_TRUE(std::any_of(placed.probes.begin(), placed.probes.end(), [&](const PlacedProbe& p) {
-            return p.kind == Kind::manual && glm::dvec3(p.position) == m * 1024.0;
+            return p.kind == Kind::manual && glm::dvec3(p.position) == m.position * 1024.0;
         }));
     }
 }
 
 TEST(ManualProbe, KeepsAutomaticOnesAwayAcrossTheBorder) {
     AnalyticScene scene = flat_ground();
-    scene.manual = {{64, 10, 1}};  // on the border: belongs to sector (1, 0)
+    scene.manual = manual_at({{64, 10, 1}});  // on the border: belongs to sector (1, 0)
     const placement::Placement left = scene.place(0, 0), right = scene.place(1, 0);
     EXPECT_EQ(count_of(left, Kind::manual), 0u);
     EXPECT_EQ(count_of(right, Kind::manual), 1u);
@@ -64,7 +65,7 @@ TEST(Placement, OrderOfInputsIsIrrelevant) {
     std::mt19937 random(5);
     const auto uniform = [&](double most) { return most * static_cast<double>(random() % 4096u) / 4096.0; };
     for (int n = 0; n < 40; ++n) {
-        scene.manual.emplace_back(uniform(64), uniform(64), uniform(9));
+        scene.manual.push_back({{uniform(64), uniform(64), uniform(9)}, {}});
         const glm::vec3 low(uniform(60), uniform(60), uniform(6));
         scene.vegetation.push_back({low, low + glm::vec3(9, 9, 12)});
         if (n % 8 == 0)
@@ -85,7 +86,7 @@ TEST(Placement, OrderOfInputsIsIrrelevant) {
 
 TEST(Placement, ProbesStandManualFirstThenByRowAndColumn) {
     AnalyticScene scene = flat_ground();
-    scene.manual = {{60, 60, 9}, {1, 1, 9}};
+    scene.manual = manual_at({{60, 60, 9}, {1, 1, 9}});
     const placement::Placement placed = scene.place(0, 0);
     const std::vector<ProbeKey> all = keys(placed.probes);
     EXPECT_EQ(count_of(placed, Kind::manual), 2u);

@@ -6,6 +6,8 @@
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 
 namespace drtv::test {
 namespace {
@@ -48,24 +50,80 @@ TEST(SolidPlacement, ProbeDeepInASolidIsDroppedAndCounted) {
     EXPECT_EQ(placed.report.moved_out, 0u);
 }
 
-TEST(SolidPlacement, QuarterOfTheRaysIsTheLimit) {
-    for (const int backs : {6, 7}) {
-        const AnalyticScene scene = one_column();
-        placement::Surroundings surroundings = scene.surroundings();
-        bool asked = false;
-        surroundings.backs_met = [&](const glm::vec3& origin,
-                                     std::span<const glm::vec3> directions) -> std::size_t {
-            EXPECT_EQ(directions.size(), 26u);
-            for (const glm::vec3& direction : directions)
-                EXPECT_NEAR(glm::dot(direction, direction), 1, 1e-6);
-            if (origin != placement::metres(start) || std::exchange(asked, true))
-                return 0;
-            return static_cast<std::size_t>(backs);
-        };
-        const auto placed = placement::place_probes({0, 0, {}, {}, {}}, surroundings, {});
-        ASSERT_TRUE(placed.has_value());
-        EXPECT_EQ(placed->report.moved_out, backs == 7 ? 1u : 0u) << backs << " of 26";
+// What the looks of the one column's probe meet.
+placement::Surroundings meeting(const AnalyticScene& scene, const placement::Met& met) {
+    placement::Surroundings surroundings = scene.surroundings();
+    surroundings.first_met = [met](const glm::vec3& origin, std::span<const placement::Look> looks,
+                                   std::size_t) {
+        EXPECT_EQ(looks.size(), 25u);
+        for (const placement::Look& look : looks) {
+            EXPECT_NEAR(glm::dot(look.direction, look.direction), 1, 1e-6);
+            EXPECT_GT(look.direction.z, 0.2f) << "upward";
+        }
+        return origin == placement::metres(start) ? met : placement::Met{0, 25, std::nullopt};
+    };
+    return surroundings;
+}
+
+placement::Placement place_one(const placement::Surroundings& surroundings) {
+    return placement::place_probes({0, 0, {}, {}, {}, {}}, surroundings, {}).value();
+}
+
+TEST(SolidPlacement, NineInTenBacksAndNoEscapeIsTheLimit) {
+    const AnalyticScene scene = one_column();
+    for (const auto& [backs, misses, solid] :
+         {std::tuple(23, 0, true), {25, 0, true}, {22, 0, false}, {24, 1, false}, {0, 0, false}}) {
+        const placement::Met met{static_cast<std::size_t>(backs), static_cast<std::size_t>(misses), 7};
+        const placement::Placement placed = place_one(meeting(scene, met));
+        EXPECT_EQ(placed.report.moved_out, solid ? 1u : 0u) << backs << " backs, " << misses << " escape";
+        ASSERT_EQ(placed.probes.size(), 1u);
+        EXPECT_EQ(placed.probes[0].moved, solid);
     }
+}
+
+TEST(SolidPlacement, AProbeInAWallGoesToOneOfItsSides) {
+    const AnalyticScene scene = one_column();
+    placement::Surroundings surroundings = scene.surroundings();
+    // A sheet in the plane x = 2.
+    surroundings.wall_within = [](const glm::vec3& point, float within_m) {
+        return std::abs(point.x - 2) < within_m ? std::optional<placement::Thing>(3) : std::nullopt;
+    };
+    surroundings.sides = [](const glm::vec3& from, const glm::vec3& to) {
+        std::vector<placement::Side> sides;
+        if ((from.x - 2) * (to.x - 2) < 0)
+            sides.push_back({0.02f, false, true});
+        return sides;
+    };
+    const placement::Placement placed = place_one(surroundings);
+    ASSERT_EQ(placed.probes.size(), 1u);
+    EXPECT_EQ(placed.report.moved_out, 1u);
+    EXPECT_NE(placed.probes[0].position.x, start.x);
+}
+
+// A cellar's floor below, a front; beside the solid the ground rises, a front as well.
+TEST(SolidPlacement, NoProbeIsPushedThroughAFront) {
+    AnalyticScene scene = one_column();
+    scene.solids = {{{0, -50, -50}, {4, 50, 50}}};
+    placement::Surroundings surroundings = scene.surroundings();
+    EXPECT_EQ(place_one(surroundings).report.moved_out, 1u);
+    surroundings.sides = [&](const glm::vec3& from, const glm::vec3& to) {
+        std::vector<placement::Side> sides = scene.sides(from, to);
+        sides.push_back({0.5f, true, false});
+        return sides;
+    };
+    EXPECT_EQ(place_one(surroundings).report.dropped_in_solid, 1u);
+    EXPECT_EQ(place_one(surroundings).dropped_in, std::vector<placement::Thing>{0});
+}
+
+TEST(SolidPlacement, AHandPlacedProbeInASolidStaysAndIsNamed) {
+    AnalyticScene scene;
+    scene.boxes = {{{0, 0, 0}, {9, 9, 9}}};
+    scene.manual = manual_at({{5, 5, 5}, {20, 20, 5}});
+    const placement::Placement placed = scene.place(0, 0);
+    EXPECT_EQ(count_of(placed, Kind::manual), 2u);
+    ASSERT_EQ(placed.buried_manual.size(), 1u);
+    EXPECT_EQ(placed.buried_manual[0].position, Position(5, 5, 5) * 1024);
+    EXPECT_EQ(placed.buried_manual[0].stand, placement::Stand::in_solid);
 }
 
 TEST(SolidPlacement, BuriedProbeTakesNoPlaceFromAGoodOne) {
@@ -88,7 +146,7 @@ TEST(SolidPlacement, MovedProbeStaysInItsSectorAndYields) {
     EXPECT_TRUE(scene.place(-1, 0).probes.empty());
 
     scene.solids = {{{0, 0, 0}, {4, 4, 2}}};
-    scene.manual = {{2, 2, 8}};  // 7 m above where it stood, but not above where it could go
+    scene.manual = manual_at({{2, 2, 8}});  // 7 m above where it stood, but not above where it could go
     EXPECT_EQ(count_of(scene.place(0, 0), Kind::ground), 0u);
 }
 

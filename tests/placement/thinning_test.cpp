@@ -15,10 +15,10 @@ AnalyticScene tower(int floors) {
     return scene;
 }
 
-std::vector<glm::dvec3> manual_row(std::size_t count, double z_m) {
-    std::vector<glm::dvec3> probes;
+std::vector<placement::ManualProbe> manual_row(std::size_t count, double z_m) {
+    std::vector<placement::ManualProbe> probes;
     for (std::size_t n = 0; n < count; ++n)
-        probes.emplace_back(0.1 + 0.2 * static_cast<double>(n), 3, z_m);
+        probes.push_back({{0.1 + 0.2 * static_cast<double>(n), 3, z_m}, {}});
     return probes;
 }
 
@@ -79,11 +79,12 @@ TEST(Thinning, SectorFullOfManualProbesHasNoRoomForOthers) {
 TEST(Thinning, MoreManualProbesThanFitAreASentence) {
     AnalyticScene scene = flat_ground();
     scene.manual = manual_row(256, 1);
-    const auto placed = placement::place_probes({0, 0, {}, scene.manual, {}}, scene.surroundings(), {});
+    const auto placed = placement::place_probes({0, 0, {}, scene.manual, {}, {}}, scene.surroundings(), {});
     ASSERT_FALSE(placed.has_value());
     EXPECT_NE(placed.error().find("sector (0, 0)"), std::string::npos) << placed.error();
     EXPECT_NE(placed.error().find("256"), std::string::npos) << placed.error();
-    EXPECT_TRUE(placement::place_probes({1, 0, {}, scene.manual, {}}, scene.surroundings(), {}).has_value())
+    EXPECT_TRUE(
+        placement::place_probes({1, 0, {}, scene.manual, {}, {}}, scene.surroundings(), {}).has_value())
         << "the neighbour is fine";
 }
 

@@ -332,15 +332,15 @@ TEST(EarlierBake, RaysOfSolidTestsAreUsedUp) {
                                reuse::assess(was.footprint, settings, {}, 0, *world)};
     ASSERT_EQ(earlier.assessment.flips.size(), was.footprint.solid_tests.size());
     const auto test = static_cast<std::size_t>(
-        std::ranges::max_element(was.footprint.solid_tests, {}, &bake::SolidTest::to_flip) -
+        std::ranges::max_element(was.footprint.solid_tests, {}, &placement::SolidTest::to_flip) -
         was.footprint.solid_tests.begin());
-    const bake::SolidTest before = was.footprint.solid_tests[test];
+    const placement::SolidTest before = was.footprint.solid_tests[test];
     ASSERT_GE(before.to_flip, 2);
     earlier.assessment.flips[test] = 1;
     const auto tests =
         reuse::bake_and_record(*world, {0, 0}, settings, &earlier).value().footprint.solid_tests;
-    EXPECT_EQ(std::ranges::count(
-                  tests, bake::SolidTest{before.position, static_cast<std::uint8_t>(before.to_flip - 1)}),
+    EXPECT_EQ(std::ranges::count(tests, placement::SolidTest{before.position,
+                                                             static_cast<std::uint8_t>(before.to_flip - 1)}),
               1);
     EXPECT_EQ(std::ranges::count(tests, before), 0);
 }
@@ -432,7 +432,10 @@ TEST(Assessment, PlacementLooksWhereNoRayGoes) {
     const auto cellar = [](bool dug) {
         GltfBuilder b;
         const int both_sides = b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}, .double_sided = true});
-        b.add_node({.mesh = b.add_mesh(ground(150), both_sides), .name = "ground"});
+        Shape roof = ground(150);  // and its front looks down: under it is no solid
+        for (std::size_t n = 0; n < roof.indices.size(); n += 3)
+            std::swap(roof.indices[n], roof.indices[n + 1]);
+        b.add_node({.mesh = b.add_mesh(roof, both_sides), .name = "ground"});
         if (dug)
             b.add_node({.mesh = b.add_mesh(box({10, -10, -18}, {22, -9, -6})), .name = "floor"});
         return open_world(b);
@@ -468,7 +471,7 @@ TEST(Assessment, LampsAndProbesOfTheNextSectorCount) {
     Yard lamp = yard, probe = yard;
     lamp.lamp_candela = 400;
     EXPECT_GE(check(yard, lamp, settings_of_yard(64, false), 1 / 32.0f, "lamp").rebakes, 8);
-    probe.probes.push_back({66, 2, -32});  // world (66, 32): 2 m beyond the middle sector's border
+    probe.probes.push_back({-1, 1.5, -34});  // world (-1, 34): a metre beyond the middle sector's border
     EXPECT_GE(check(yard, probe, settings_of_yard(64, false), 1 / 32.0f, "probe").rebakes, 2);
 }
 

@@ -310,7 +310,8 @@ TEST(Footprint, WeightsStayWhereRaisingThemIsOfNoUse) {
     for (std::uint64_t& column : footprint.crossed)
         column = random() & reuse::layers_between(0, footprint.grid.layers - 1);
     footprint.weights.assign(footprint.grid.block_count() * reuse::quarter_count, 0);
-    for (bake::SolidTest test; footprint.solid_tests.size() < 3000; footprint.solid_tests.push_back(test))
+    for (placement::SolidTest test; footprint.solid_tests.size() < 3000;
+         footprint.solid_tests.push_back(test))
         test.position = placement::Position(random(), random(), random());
     for (std::uint8_t& weight : footprint.weights)
         weight = static_cast<std::uint8_t>(1 + random() % 2);

@@ -128,9 +128,7 @@ inline constexpr Error convergence_range("CONVERGENCE_RANGE",
 inline constexpr Error grid_reference("GRID_REFERENCE", index, "a grid cell names a probe that is not there");
 inline constexpr Error grid_no_probe("GRID_NO_PROBE",
                                      index,
-                                     "a grid cell is empty although the sector has probes");
-inline constexpr Error grid_not_nearest(
-    "GRID_NOT_NEAREST", index, "a grid cell names a probe that is not one of the 4 nearest to its centre");
+                                     "a grid cell is empty although the sector has probes for it");
 inline constexpr Error duplicate_position("DUPLICATE_POSITION",
                                           index,
                                           "two probes stand at the same position");
@@ -143,19 +141,15 @@ inline constexpr Error local_source_duplicate("LOCAL_SOURCE_DUPLICATE",
 
 inline constexpr Error neighbour_source(
     "NEIGHBOUR_SOURCE", borders, "a local source is a probe that the neighbouring sector does not have");
-inline constexpr Error neighbour_distance("NEIGHBOUR_DISTANCE",
-                                          borders,
-                                          "automatic probes on both sides of a border stand nearer than the "
-                                          "minimal distance: the sectors were placed on different maps");
 inline constexpr Warning neighbour_sections(
     "NEIGHBOUR_SECTIONS",
     borders,
     "of two neighbouring sectors one has a section of light that the other has not");
-inline constexpr Warning neighbour_step(
-    "NEIGHBOUR_STEP",
-    borders,
-    "light changes across a border much more than inside the two sectors: they were baked of different maps, "
-    "or a wall stands on the border");
+inline constexpr Warning neighbour_step("NEIGHBOUR_STEP",
+                                        borders,
+                                        "light changes across a border much more than inside the two "
+                                        "sectors, and than heights and sky visibility "
+                                        "on both sides explain: they were baked of different maps");
 
 inline constexpr Error set_duplicate("SET_DUPLICATE", set, "two files hold the same sector");
 inline constexpr Error set_settings("SET_SETTINGS",

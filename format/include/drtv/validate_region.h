@@ -27,6 +27,7 @@ struct RegionSector {
     std::int32_t position_step_units = 1;
     std::vector<std::array<float, basis_count * channel_count>>
         light;  // E/pi under a white sky of radiance 1, [b][c]
+    std::vector<std::array<float, basis_count>> sky_visibility;
     Grid grid;
     bool has_local_transfer = false;
     std::vector<LocalSource> local_sources;

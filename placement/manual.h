@@ -1,0 +1,25 @@
+// Hand-placed probes as placement sees them.
+#pragma once
+
+#include "placement/placement.h"
+
+#include <span>
+#include <vector>
+
+namespace drtv::placement {
+
+struct Manual {
+    Position position;
+    std::vector<const ClosedVolume*> interiors;  // that name it: it serves these alone
+};
+
+// An order that no change elsewhere in a sector disturbs much.
+[[nodiscard]] bool is_before(const Position& a, const Position& b);
+
+// Each place once, in that order. One that some name and others do not serves all.
+[[nodiscard]] std::vector<Manual> manual_probes(std::span<const ManualProbe> manual);
+
+// Whether its light is meant for the position.
+[[nodiscard]] bool serves(const Manual& probe, const Position& position);
+
+}  // namespace drtv::placement

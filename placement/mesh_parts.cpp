@@ -1,0 +1,109 @@
+#include "placement/mesh_parts.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace drtv::placement {
+namespace {
+
+// Sets that are joined two at a time, with halving of paths (Tarjan 1975).
+class DisjointSets {
+  public:
+    explicit DisjointSets(std::size_t count) : parents_(count) {
+        std::iota(parents_.begin(), parents_.end(), 0u);
+    }
+
+    std::uint32_t root_of(std::uint32_t n) {
+        while (parents_[n] != n)
+            n = parents_[n] = parents_[parents_[n]];
+        return n;
+    }
+    // The smaller number stays the root.
+    void join(std::uint32_t a, std::uint32_t b) {
+        const std::uint32_t root_a = root_of(a);
+        const std::uint32_t root_b = root_of(b);
+        parents_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+    }
+
+  private:
+    std::vector<std::uint32_t> parents_;
+};
+
+bool has_three_corners(const glm::uvec3& t) {
+    return t.x != t.y && t.y != t.z && t.z != t.x;
+}
+
+}  // namespace
+
+MergedVertices merge_vertices(std::span<const glm::dvec3> vertices) {
+    struct Vertex {
+        glm::dvec3 position;
+        std::uint32_t index;
+    };
+    std::vector<Vertex> sorted;
+    sorted.reserve(vertices.size());
+    for (const glm::dvec3& position : vertices)
+        sorted.push_back({position + 0.0, static_cast<std::uint32_t>(sorted.size())});  // -0 becomes 0
+    const auto place = [](const Vertex& v) { return std::tie(v.position.x, v.position.y, v.position.z); };
+    std::ranges::sort(sorted, [&](const Vertex& a, const Vertex& b) { return place(a) < place(b); });
+    MergedVertices merged;
+    merged.number.resize(vertices.size());
+    for (std::size_t n = 0; n < sorted.size(); ++n) {
+        if (n == 0 || place(sorted[n - 1]) != place(sorted[n]))
+            merged.positions.push_back(sorted[n].position);
+        merged.number[sorted[n].index] = static_cast<std::uint32_t>(merged.positions.size() - 1);
+    }
+    return merged;
+}
+
+std::vector<HalfEdge> half_edges(std::span<const glm::uvec3> triangles) {
+    std::vector<HalfEdge> edges;
+    edges.reserve(3 * triangles.size());
+    for (std::uint32_t n = 0; n < triangles.size(); ++n) {
+        const glm::uvec3& t = triangles[n];
+        if (!has_three_corners(t))
+            continue;
+        for (glm::length_t k = 0; k < 3; ++k) {
+            const std::uint32_t from = t[k];
+            const std::uint32_t to = t[(k + 1) % 3];
+            edges.push_back({std::min(from, to), std::max(from, to), n, from < to});
+        }
+    }
+    std::ranges::sort(edges, {}, [](const HalfEdge& e) { return std::tuple(e.low, e.high, e.triangle); });
+    return edges;
+}
+
+bool is_balanced(std::span<const HalfEdge> edge) {
+    return 2 * static_cast<std::size_t>(std::ranges::count(edge, true, &HalfEdge::rising)) == edge.size();
+}
+
+MeshParts parts_by_edges(std::span<const glm::uvec3> triangles, std::span<const HalfEdge> half_edges) {
+    DisjointSets sets(triangles.size());
+    std::vector<std::uint32_t> at_open_edges;
+    visit_edges(half_edges, [&](std::span<const HalfEdge> edge) {
+        for (const HalfEdge& half : edge)
+            sets.join(edge.front().triangle, half.triangle);
+        if (!is_balanced(edge))
+            at_open_edges.push_back(edge.front().triangle);
+    });
+    MeshParts parts;
+    parts.part_of.resize(triangles.size(), no_part);
+    for (std::uint32_t n = 0; n < triangles.size(); ++n) {
+        if (!has_three_corners(triangles[n]))
+            continue;
+        const std::uint32_t root = sets.root_of(n);  // comes first in its part
+        if (root == n) {
+            parts.part_of[n] = static_cast<std::uint32_t>(parts.closed.size());
+            parts.closed.push_back(true);
+        }
+        parts.part_of[n] = parts.part_of[root];
+    }
+    for (const std::uint32_t triangle : at_open_edges)
+        parts.closed[parts.part_of[triangle]] = false;
+    return parts;
+}
+
+}  // namespace drtv::placement

@@ -1,0 +1,58 @@
+// Which triangles of a mesh hang together by edges, and which of these parts are closed.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace drtv::placement {
+
+// Vertices at equal positions as one: glTF splits them by normal.
+struct MergedVertices {
+    std::vector<glm::dvec3> positions;
+    std::vector<std::uint32_t> number;  // of each vertex: its position
+};
+[[nodiscard]] MergedVertices merge_vertices(std::span<const glm::dvec3> vertices);
+
+// A triangle's way along one of its edges.
+struct HalfEdge {
+    std::uint32_t low;  // vertices, the smaller number first
+    std::uint32_t high;
+    std::uint32_t triangle;
+    bool rising;  // from low to high
+};
+
+// Of all triangles with three different corners, sorted by their vertices.
+[[nodiscard]] std::vector<HalfEdge> half_edges(std::span<const glm::uvec3> triangles);
+
+// Calls visit(half-edges of one edge) for each edge. REQUIRES: they are sorted.
+template <class Visit>
+void visit_edges(std::span<const HalfEdge> half_edges, Visit visit) {
+    for (std::size_t n = 0; n < half_edges.size();) {
+        const HalfEdge& first = half_edges[n];
+        std::size_t end = n;
+        while (end < half_edges.size() && half_edges[end].low == first.low &&
+               half_edges[end].high == first.high)
+            ++end;
+        visit(half_edges.subspan(n, end - n));
+        n = end;
+    }
+}
+
+// Whether the edge is passed as often one way as the other.
+[[nodiscard]] bool is_balanced(std::span<const HalfEdge> edge);
+
+inline constexpr std::uint32_t no_part = UINT32_MAX;
+
+struct MeshParts {
+    std::vector<std::uint32_t> part_of;  // by triangle; no_part of one with two equal corners
+    // By part, in the order of their first triangles: each edge is balanced, so that winding numbers around
+    // it are whole.
+    std::vector<bool> closed;
+};
+[[nodiscard]] MeshParts parts_by_edges(std::span<const glm::uvec3> triangles,
+                                       std::span<const HalfEdge> half_edges);
+
+}  // namespace drtv::placement

@@ -1,0 +1,60 @@
+// The spaces of a sector between its surfaces, on vertical lines 2 m apart: which of them are the inside of a
+// solid, or lie under the ground.
+#pragma once
+
+#include "placement/placement.h"
+
+#include <glm/vec2.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace drtv::placement {
+
+class Spaces {
+  public:
+    static constexpr std::int32_t lines_along = 32;
+
+    // `corner` is the sector's. Nothing is asked beyond the sector: what changes there does not change its
+    // grid. REQUIRES: the surroundings outlive it.
+    Spaces(const Position& corner, float bottom_m, float top_m, const Surroundings& surroundings);
+
+    [[nodiscard]] glm::vec2 line_at(std::int32_t x, std::int32_t y) const;
+
+    // From a height on a line, out of the solid that holds it if need be; nothing where that ends at `top_m`.
+    [[nodiscard]] std::optional<float> free_height(std::int32_t x, std::int32_t y, float z_m, float top_m);
+
+  private:
+    // Part of a line between two surfaces: all of it is in one space.
+    struct Interval {
+        float low_m, high_m;      // within the heights that matter
+        bool under_back = false;  // the surface above it is seen from its back
+        std::uint32_t space = 0;  // the first interval that is known to be of the same space
+    };
+    struct Line {
+        std::vector<ColumnHit> hits;           // from the bottom up
+        std::vector<std::uint32_t> intervals;  // by the number of surfaces below
+    };
+
+    void add_line(std::int32_t x, std::int32_t y, float bottom_m, float top_m);
+    void join_neighbours();
+    void join(std::int32_t x, std::int32_t y, std::int32_t other_x, std::int32_t other_y);
+    [[nodiscard]] std::uint32_t space_of(std::uint32_t interval);
+    [[nodiscard]] bool is_in_solid(const Line& line, const glm::vec2& at, std::size_t below, float z_m);
+    void test_spaces();
+    [[nodiscard]] bool is_behind(const glm::vec3& point) const;
+    [[nodiscard]] const Line& line(std::int32_t x, std::int32_t y) const {
+        return lines_[static_cast<std::size_t>(y * lines_along + x)];
+    }
+
+    const Position corner_;
+    const Surroundings& surroundings_;
+    std::vector<Line> lines_;  // by row
+    std::vector<Interval> intervals_;
+    std::vector<bool> behind_;                 // by space
+    std::vector<std::optional<bool>> closed_;  // by interval: inside closed surfaces
+};
+
+}  // namespace drtv::placement
