@@ -73,7 +73,9 @@ int tell_end(const Connection& connection, const v1::Job& job) {
         warn(warning);
     const bool succeeded = job.state() == v1::Job::SUCCEEDED;
     if (succeeded && job.sectors_total() > 0 && job.probes() == 0) {
-        warn("no probe was placed: no column of the 4 m lattice meets ground with 1.5 m of air above it");
+        warn(
+            "no probe was placed: no column of the lattice meets ground that faces up, with 1.5 m of air "
+            "above it");
     }
     if (job.state() == v1::Job::FAILED)
         return complain(job.error());

@@ -58,7 +58,7 @@ class GridBuild {
             return grid_;
         const float bottom_m = metres(corner_).z;
         const float top_m = metres(corner_ + Position(0, 0, cells_along * cell_height())).z;
-        spaces_.emplace(Position(corner_.x, corner_.y, 0), bottom_m, top_m, surroundings_);
+        spaces_.emplace(Position(corner_.x, corner_.y, 0), bottom_m, top_m, places_, surroundings_);
         std::size_t cell = 0;
         for (std::int32_t z = 0; z < cells_along; ++z) {
             for (std::int32_t y = 0; y < cells_along; ++y) {

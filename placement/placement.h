@@ -90,7 +90,7 @@ struct Surroundings {
     // One look after the other, until so many have missed.
     std::function<Met(const glm::vec3& origin, std::span<const Look> looks, std::size_t most_misses)>
         first_met;
-    // A static object with a surface nearer than that.
+    // An object with a surface nearer than that, static or bounding a volume.
     std::function<std::optional<Thing>(const glm::vec3&, float within_m)> wall_within;
     // Static surfaces, and those that bound volumes, on the straight way; in any order.
     std::function<std::vector<Side>(const glm::vec3& from, const glm::vec3& to)> sides;

@@ -4,30 +4,37 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace drtv::placement {
 namespace {
 
-constexpr std::size_t looks = 25;
-constexpr std::size_t least_backs = 23;  // nine in ten
+constexpr std::size_t ring_count = 6;
+constexpr std::size_t ring_size = 8;
+constexpr std::size_t look_count = 1 + ring_count * ring_size;
+constexpr std::size_t least_backs = 39;  // four in five
 
-// Up, and three rings at 60, 35 and 15 degrees over the horizon: a room's walls are met by the lowest, and a
-// slope under a rock by few of them.
-std::array<Look, looks> make_looks() {
+// Up, and then evenly over the upper half of the sphere: rings at equal steps of height, each turned against
+// the one before by half of its step (5, 12 and 13 make a right angle). The upper rings first, because they
+// escape where anything does.
+std::array<Look, look_count> make_looks() {
     constexpr float infinity = std::numeric_limits<float>::infinity();
-    std::array<Look, looks> made;
+    constexpr std::array<std::array<glm::vec2, ring_size>, 2> around = {
+        {{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}},
+         {{{12, 5}, {-12, -5}, {-5, 12}, {5, -12}, {5, 12}, {-5, -12}, {-12, 5}, {12, -5}}}}};
+    std::array<Look, look_count> made;
     made[0] = {{0, 0, 1}, infinity};
     std::size_t n = 1;
-    for (const float rise : {1.73f, 0.7f, 0.27f}) {
-        for (const glm::vec2& way :
-             {glm::vec2(1, 0), {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}})
-            made[n++] = {glm::normalize(glm::vec3(way, rise * glm::length(way))), infinity};
+    for (std::size_t ring = ring_count; ring-- > 0;) {
+        const float z = (static_cast<float>(ring) + 0.5f) / ring_count;
+        for (const glm::vec2& way : around[ring % 2])
+            made[n++] = {glm::vec3(glm::normalize(way) * std::sqrt(1 - z * z), z), infinity};
     }
     return made;
 }
 
-const std::array<Look, looks> test_looks = make_looks();
+const std::array<Look, look_count> test_looks = make_looks();
 
 }  // namespace
 

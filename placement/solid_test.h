@@ -1,6 +1,6 @@
 // Whether a point stands inside a solid, by geometry alone: neither the material's sides nor the node's role
 // count. Two rules together: it is inside what closed surfaces bound; or, for what is not closed (a rock
-// without a bottom, ground seen from below), rays upward meet nearly only backs and none escapes.
+// without a bottom, ground seen from below), rays upward meet four in five times backs and none escapes.
 #pragma once
 
 #include "placement/placement.h"

@@ -1,5 +1,5 @@
 // The spaces of a sector between its surfaces, on vertical lines 2 m apart: which of them are the inside of a
-// solid, or lie under the ground.
+// solid, or lie under the ground and are sealed. From a sealed space nothing of the sector is seen.
 #pragma once
 
 #include "placement/placement.h"
@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace drtv::placement {
@@ -17,9 +18,13 @@ class Spaces {
   public:
     static constexpr std::int32_t lines_along = 32;
 
-    // `corner` is the sector's. Nothing is asked beyond the sector: what changes there does not change its
-    // grid. REQUIRES: the surroundings outlive it.
-    Spaces(const Position& corner, float bottom_m, float top_m, const Surroundings& surroundings);
+    // `corner` is the sector's; what a probe stands in is not sealed. Nothing is asked beyond the sector:
+    // what changes there does not change its grid. REQUIRES: the surroundings outlive it.
+    Spaces(const Position& corner,
+           float bottom_m,
+           float top_m,
+           std::span<const glm::vec3> probes,
+           const Surroundings& surroundings);
 
     [[nodiscard]] glm::vec2 line_at(std::int32_t x, std::int32_t y) const;
 
@@ -30,7 +35,8 @@ class Spaces {
     // Part of a line between two surfaces: all of it is in one space.
     struct Interval {
         float low_m, high_m;      // within the heights that matter
-        bool under_back = false;  // the surface above it is seen from its back
+        bool under_back = false;  // the next surface above it that bounds no volume is seen from its back
+        bool open = false;        // of a space: it leads to others that are under none, or holds a probe
         std::uint32_t space = 0;  // the first interval that is known to be of the same space
     };
     struct Line {
@@ -42,9 +48,9 @@ class Spaces {
     void join_neighbours();
     void join(std::int32_t x, std::int32_t y, std::int32_t other_x, std::int32_t other_y);
     [[nodiscard]] std::uint32_t space_of(std::uint32_t interval);
+    [[nodiscard]] static std::size_t surfaces_below(const Line& line, float z_m);
     [[nodiscard]] bool is_in_solid(const Line& line, const glm::vec2& at, std::size_t below, float z_m);
-    void test_spaces();
-    [[nodiscard]] bool is_behind(const glm::vec3& point) const;
+    void open_at(const glm::vec3& place);
     [[nodiscard]] const Line& line(std::int32_t x, std::int32_t y) const {
         return lines_[static_cast<std::size_t>(y * lines_along + x)];
     }
@@ -53,7 +59,6 @@ class Spaces {
     const Surroundings& surroundings_;
     std::vector<Line> lines_;  // by row
     std::vector<Interval> intervals_;
-    std::vector<bool> behind_;                 // by space
     std::vector<std::optional<bool>> closed_;  // by interval: inside closed surfaces
 };
 

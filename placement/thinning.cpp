@@ -15,14 +15,19 @@ class Thinner {
     // Those that have no earlier one nearer than the distance.
     std::vector<std::size_t> spaced(float growth, bool by_sight) {
         std::vector<std::size_t> kept;
-        for (std::size_t n = 0; n < own_.size(); ++n) {
+        fill(growth, by_sight, own_.size(), kept);
+        return kept;
+    }
+
+    // Adds those that no kept one takes the place of, up to so many in all.
+    void fill(float growth, bool by_sight, std::size_t max_count, std::vector<std::size_t>& kept) {
+        for (std::size_t n = 0; n < own_.size() && kept.size() < max_count; ++n) {
             const auto takes_its_place = [&](std::size_t other) {
-                return are_near(n, other, growth) && (!by_sight || see(n, other));
+                return n == other || (are_near(n, other, growth) && (!by_sight || see(n, other)));
             };
             if (std::ranges::none_of(kept, takes_its_place))
                 kept.push_back(n);
         }
-        return kept;
     }
 
   private:
@@ -54,14 +59,20 @@ Thinned thin(std::span<const Candidate> own, std::size_t max_count, const Sees& 
     Thinner thinner(own, sees);
     bool by_sight = true;
     std::vector<std::size_t> kept = thinner.spaced(1, by_sight);
+    const bool too_many = kept.size() > max_count;
+    float grown = 1;
     while (kept.size() > max_count) {
-        thinned.growth *= step;
-        if (by_sight && thinned.growth > most_growth) {
+        thinned.growth = grown;
+        grown *= step;
+        if (by_sight && grown > most_growth) {
             by_sight = false;
-            thinned.growth = 1;
+            thinned.growth = grown = 1;
         }
-        kept = thinner.spaced(thinned.growth, by_sight);
+        kept = thinner.spaced(grown, by_sight);
     }
+    // The last step took too many.
+    if (too_many)
+        thinner.fill(thinned.growth, by_sight, max_count, kept);
     for (const std::size_t n : kept)
         thinned.probes.push_back({own[n].position, own[n].kind, own[n].moved});
     return thinned;

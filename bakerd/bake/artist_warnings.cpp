@@ -2,13 +2,12 @@
 
 #include "bakerd/bake/lights.h"
 #include "bakerd/bake/sampling.h"
-#include "placement/units.h"
+#include "bakerd/bake/shown_names.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <optional>
 
@@ -18,10 +17,6 @@ namespace {
 double back_hit_share(const Statistics& statistics) {
     const auto rays = std::max<std::uint64_t>(statistics.rays, 1);
     return static_cast<double>(statistics.back_hits) / static_cast<double>(rays);
-}
-
-std::string object_name(const map::Map& map, std::uint32_t object) {
-    return shown_name(map.objects[object].name, "an object");
 }
 
 // Below a lid as wide as the reach some sky is left at the horizon.
@@ -65,24 +60,7 @@ std::optional<std::uint32_t> shell_of(const PointLight& lamp, float most_m, cons
     return shell;
 }
 
-const char* how_it_stands(placement::Stand stand) {
-    switch (stand) {
-        case placement::Stand::in_wall:
-            return "in a wall:";
-        case placement::Stand::behind:
-            return "under the ground, or behind the faces of";
-        case placement::Stand::free:
-        case placement::Stand::in_solid:
-            return "inside";
-    }
-    return "inside";
-}
-
 }  // namespace
-
-std::string shown_name(const std::string& name, const char* kind) {
-    return name.empty() ? fmt::format("{} without a name", kind) : fmt::format("'{}'", name);
-}
 
 bool has_many_back_hits(const Statistics& statistics) {
     constexpr double max_share = 0.05;
@@ -109,7 +87,7 @@ void warn_of_back_hits(const map::Map& map,
                     sector.i,
                     sector.j,
                     back_hit_share(sector.statistics) * 100,
-                    object_name(map, most->first)));
+                    shown_object(map, most->first)));
 }
 
 // Without the sector, so that a job says it once.
@@ -141,7 +119,7 @@ void warn_of_closed_sky(const trace::Scene& scene,
         warnings.push_back(
             fmt::format("no probe under {} sees the sky: a dome or lid that stands for the sky is to be "
                         "left out of the bake, with bake_role 'ignore'",
-                        object_name(scene.map(), object)));
+                        shown_object(scene.map(), object)));
     }
 }
 
@@ -155,57 +133,12 @@ void warn_of_enclosed_lamps(const trace::Scene& scene,
         const std::optional<std::uint32_t> shell = shell_of(point_light(light), near_m, scene);
         if (shell)
             warnings.push_back(fmt::format(
-                "the light {} at ({:.2f}, {:.2f}, {:.2f}) is enclosed by {}, and lights nothing "
+                "the light {} at {} is enclosed by {}, and lights nothing "
                 "else: move it out, let that glow itself, or leave it out with bake_role 'ignore'",
                 shown_name(light.name, "one"),
-                light.position.x,
-                light.position.y,
-                light.position.z,
-                object_name(scene.map(), *shell)));
+                shown_place(glm::dvec3(light.position)),
+                shown_object(scene.map(), *shell)));
     }
-}
-
-void warn_of_buried_probe(const map::Map& map,
-                          const placement::BuriedManual& buried,
-                          std::vector<std::string>& warnings) {
-    for (const map::ManualProbe& probe : map.probes) {
-        if (placement::to_position(probe.position) != buried.position)
-            continue;
-        warnings.push_back(fmt::format("the probe {} at ({:.2f}, {:.2f}, {:.2f}) stands {} {}",
-                                       shown_name(probe.name, "one"),
-                                       probe.position.x,
-                                       probe.position.y,
-                                       probe.position.z,
-                                       how_it_stands(buried.stand),
-                                       object_name(map, buried.thing)));
-    }
-}
-
-void warn_of_empty_places(const map::Map& map,
-                          map::SectorCoordinate sector,
-                          std::span<const placement::Thing> dropped_in,
-                          std::vector<std::string>& warnings) {
-    if (dropped_in.empty())
-        return;
-    std::map<std::string, std::size_t> by_name;
-    for (const placement::Thing thing : dropped_in)
-        ++by_name[object_name(map, thing)];
-    std::vector<std::pair<std::string, std::size_t>> most(by_name.begin(), by_name.end());
-    std::ranges::stable_sort(most, std::greater(), [](const auto& entry) { return entry.second; });
-    constexpr std::size_t most_named = 3;
-    std::string names;
-    for (std::size_t n = 0; n < most.size() && n < most_named; ++n)
-        names += fmt::format("{}{} ({})", n == 0 ? "" : ", ", most[n].first, most[n].second);
-    if (most.size() > most_named)
-        names += fmt::format(" and {} more", most.size() - most_named);
-    warnings.push_back(
-        fmt::format("sector ({}, {}): {} {} in solids and {} empty: {}",
-                    sector.i,
-                    sector.j,
-                    dropped_in.size(),
-                    dropped_in.size() == 1 ? "place for a probe lies" : "places for probes lie",
-                    dropped_in.size() == 1 ? "stays" : "stay",
-                    names));
 }
 
 }  // namespace drtv::bake

@@ -16,9 +16,6 @@
 
 namespace drtv::bake {
 
-// 'Name', or what stands for one that has none.
-[[nodiscard]] std::string shown_name(const std::string& name, const char* kind);
-
 // Whether so many of its rays ended at the back of a one-sided surface that something stands inside out or
 // open.
 [[nodiscard]] bool has_many_back_hits(const Statistics& statistics);
@@ -43,17 +40,5 @@ void warn_of_closed_sky(const trace::Scene& scene,
 void warn_of_enclosed_lamps(const trace::Scene& scene,
                             map::SectorCoordinate sector,
                             std::vector<std::string>& warnings);
-
-// Of a hand-placed probe that stands in a wall, in a solid or under ground: it stays.
-void warn_of_buried_probe(const map::Map& map,
-                          const placement::BuriedManual& buried,
-                          std::vector<std::string>& warnings);
-
-// Of places for probes that lie in solids, with those in which most of them lie; `dropped_in` names one for
-// each place.
-void warn_of_empty_places(const map::Map& map,
-                          map::SectorCoordinate sector,
-                          std::span<const placement::Thing> dropped_in,
-                          std::vector<std::string>& warnings);
 
 }  // namespace drtv::bake

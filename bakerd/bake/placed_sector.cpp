@@ -1,7 +1,7 @@
 #include "bakerd/bake/placed_sector.h"
 
-#include "bakerd/bake/artist_warnings.h"
 #include "bakerd/bake/placement_scene.h"
+#include "bakerd/bake/probe_warnings.h"
 
 #include <fmt/format.h>
 

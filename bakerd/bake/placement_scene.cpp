@@ -54,7 +54,7 @@ placement::Surroundings surroundings_of(const trace::Scene& scene, float reach_m
         return met;
     };
     surroundings.wall_within = [&scene](const glm::vec3& point, float within_m) {
-        return scene.static_within(point, within_m);
+        return scene.wall_within(point, within_m);
     };
     surroundings.sides = [&scene, between](const glm::vec3& from, const glm::vec3& to) {
         std::vector<placement::Side> sides;

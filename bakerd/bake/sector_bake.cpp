@@ -6,6 +6,7 @@
 #include "bakerd/bake/local_encoding.h"
 #include "bakerd/bake/local_transfer.h"
 #include "bakerd/bake/placement_scene.h"
+#include "bakerd/bake/probe_warnings.h"
 #include "placement/grid.h"
 
 #include <fmt/format.h>
@@ -135,7 +136,10 @@ class SectorBake {
     void warn_of_all() {
         warn_of_back_hits(world_.map(), baked_.sector, back_hits_, baked_.warnings);
         const trace::FloatMode float_mode;
+        const std::size_t before = baked_.warnings.size();
         warn_of_closed_sky(*around_.scene, baked_.sector, baked_.positions, baked_.warnings);
+        if (baked_.warnings.size() == before)  // else that is why they are dark
+            warn_of_dark_probes(*around_.scene, baked_.sector, baked_.positions, baked_.warnings);
         warn_of_enclosed_lamps(*around_.scene, coordinate_, baked_.warnings);
     }
 

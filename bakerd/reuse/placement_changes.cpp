@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -104,6 +105,7 @@ SolidTestChanges::SolidTestChanges(const Footprint& footprint)
 bool SolidTestChanges::add(std::span<const Bounds> boxes) {
     const std::span<const placement::Look> looks = placement::solid_test_looks();
     const float reach_m = footprint_.reach_m;
+    assert(looks.size() <= 64);  // a bit for each
     for (std::size_t n = 0; n < rays_.size(); ++n) {
         const placement::SolidTest& test = footprint_.solid_tests[n];
         const glm::vec3 place = placement::metres(test.position);
@@ -114,7 +116,7 @@ bool SolidTestChanges::add(std::span<const Bounds> boxes) {
             const auto is_met = [&](const Bounds& box) {
                 return entry_distance(place, looks[d].direction, box) <= reach_m;
             };
-            const std::uint32_t bit = 1u << d;
+            const std::uint64_t bit = std::uint64_t{1} << d;
             if ((rays_[n] & bit) == 0 && std::ranges::any_of(boxes, is_met))
                 rays_[n] |= bit;
         }
@@ -126,7 +128,7 @@ bool SolidTestChanges::add(std::span<const Bounds> boxes) {
 
 std::vector<std::uint8_t> SolidTestChanges::counts() const {
     std::vector<std::uint8_t> counts;
-    for (const std::uint32_t rays : rays_)
+    for (const std::uint64_t rays : rays_)
         counts.push_back(static_cast<std::uint8_t>(std::popcount(rays)));
     return counts;
 }

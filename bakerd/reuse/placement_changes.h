@@ -58,7 +58,7 @@ class SolidTestChanges {
 
   private:
     const Footprint& footprint_;
-    std::vector<std::uint32_t> rays_;  // by test: those counted, a bit for each direction
+    std::vector<std::uint64_t> rays_;  // by test: those counted, a bit for each direction
 };
 
 }  // namespace drtv::reuse

@@ -117,9 +117,9 @@ class Scene {
     // behind it. Leaves, glass and fences never do.
     [[nodiscard]] bool separated(const Ray& ray) const;
 
-    // The static object of which some triangle comes within so much of the point; what alpha takes away
-    // counts as there. Of several the nearest, then the first of the map.
-    [[nodiscard]] std::optional<std::uint32_t> static_within(const glm::vec3& point, float most_m) const;
+    // The object of which some triangle comes within so much of the point, static or bounding a volume; what
+    // alpha takes away counts as there. Of several the nearest, then the first of the map.
+    [[nodiscard]] std::optional<std::uint32_t> wall_within(const glm::vec3& point, float most_m) const;
 
     // To the nearest surface of any kind, at most `most_m`; what alpha takes away counts as there.
     [[nodiscard]] float distance_to_surface(const glm::vec3& point, float most_m) const;
@@ -167,7 +167,7 @@ class Scene {
     [[nodiscard]] bool ends_behind(const Ray& ray) const;
     void column(glm::vec2 at, const glm::vec3& down, Collected wanted, std::vector<ColumnHit>& hits) const;
     struct Nearest;
-    [[nodiscard]] Nearest nearest_surface(const glm::vec3& point, float most_m, bool only_static) const;
+    [[nodiscard]] Nearest nearest_surface(const glm::vec3& point, float most_m, bool only_walls) const;
     struct Around;
     void add_around(const Crossing& crossing, bool front, std::vector<Around>& parts) const;
     [[nodiscard]] std::optional<std::uint32_t> closed_around(const Ray& line) const;

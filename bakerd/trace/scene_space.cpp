@@ -158,32 +158,32 @@ struct Scene::Nearest {
 };
 
 // At most `most_m` away.
-Scene::Nearest Scene::nearest_surface(const glm::vec3& point, float most_m, bool only_static) const {
+Scene::Nearest Scene::nearest_surface(const glm::vec3& point, float most_m, bool only_walls) const {
     struct Search {
         const Scene& scene;
         Ray from;  // for its start
         glm::dvec3 point;
-        bool only_static;
+        bool only_walls;
         Nearest nearest;
     };
-    Search search{*this, {point, {}, 0}, point, only_static, {most_m, std::nullopt}};
+    Search search{*this, {point, {}, 0}, point, only_walls, {most_m, std::nullopt}};
     // Embree rounds: of two that are about as near it must offer both.
     RTCPointQuery query{point.x, point.y, point.z, 0, most_m + query_slack(search.from, most_m)};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     const auto look = [](RTCPointQueryFunctionArguments* found) {
-        auto& [scene, from, at, only_fixed, nearest] = *static_cast<Search*>(found->userPtr);
+        auto& [scene, from, at, walls, nearest] = *static_cast<Search*>(found->userPtr);
         std::uint32_t instance = found->context->instID[0];
         if (found->context->instStackSize == 0)
             instance = scene.world_sets_[found->geomID - scene.map_->objects.size()]->instance;
         else if (scene.instances_[instance].mesh->is_margin(found->geomID))
             return false;
-        if (only_fixed && scene.role_of(instance) == map::Role::vegetation)
+        const TriangleSet& set = scene.set_of(instance, found->geomID);
+        if (walls && scene.role_of(instance) == map::Role::vegetation &&
+            set.closed_part_of(found->primID) == ClosedParts::none)
             return false;
-        const auto distance_m = static_cast<float>(
-            distance_to(trace::transformed(scene.world_from_object(instance),
-                                           corners_of(scene.set_of(instance, found->geomID), found->primID)),
-                        at));
+        const auto distance_m = static_cast<float>(distance_to(
+            trace::transformed(scene.world_from_object(instance), corners_of(set, found->primID)), at));
         const bool is_first =
             distance_m == nearest.distance_m && nearest.instance && instance < *nearest.instance;
         if (!(distance_m < nearest.distance_m) && !is_first)
@@ -200,7 +200,7 @@ float Scene::distance_to_surface(const glm::vec3& point, float most_m) const {
     return nearest_surface(point, most_m, false).distance_m;
 }
 
-std::optional<std::uint32_t> Scene::static_within(const glm::vec3& point, float most_m) const {
+std::optional<std::uint32_t> Scene::wall_within(const glm::vec3& point, float most_m) const {
     const Nearest nearest = nearest_surface(point, most_m, true);
     return nearest.instance ? std::optional(object_index(*nearest.instance)) : std::nullopt;
 }

@@ -261,7 +261,7 @@ class ValidateOptions(Tool):
                 "offset": 551,
                 "path": "grid.cells[7]",
                 "value": 255,
-                "message": "names no probe, the sector has 2",
+                "message": "names no probe, the sector has 2 that no interior names",
             },
         )
         self.assertIsNone(report["files"][1]["findings"][0]["value"])

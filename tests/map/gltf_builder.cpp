@@ -266,6 +266,8 @@ int GltfBuilder::add_node(const NodeSource& source) {
         node["extras"]["bake_role"] = source.role;
     if (!source.probe.empty())
         node["extras"]["bake_probe"] = source.probe;
+    if (source.spacing > 0)
+        node["extras"]["bake_spacing"] = source.spacing;
     return add("nodes", std::move(node));
 }
 

@@ -79,6 +79,7 @@ struct NodeSource {
     std::vector<double> matrix = {};  // 16, column after column
     std::vector<int> children = {};
     std::string name = {}, role = {}, probe = {};  // extras: bake_role, bake_probe
+    double spacing = 0;                            // and bake_spacing
 };
 
 using Files = std::map<std::string, FileBytes>;

@@ -164,22 +164,37 @@ TEST(ProbeGrid, ACellThatSeesNoneTakesOneOfItsOwnSpace) {
     EXPECT_EQ(grid.blind_cells, 4096u);
 }
 
-// Ground at z = 3.1, its front up, and nothing below.
+// Ground at z = 3.8, its front up, west of a cliff at x = 32; east of it is nothing. A wall at x = 4.
+placement::Surroundings ground_and_wall() {
+    const auto over_ground = [](const glm::vec3& p) { return p.x >= 32 || p.z >= 3.8f; };
+    placement::Surroundings surroundings = space([over_ground](const glm::vec3& a, const glm::vec3& b) {
+        return over_ground(a) == over_ground(b) && (a.x < 4) == (b.x < 4);
+    });
+    surroundings.column_of_spaces = [](glm::vec2 at, std::vector<ColumnHit>& hits) {
+        hits.clear();
+        if (at.x < 32)
+            hits.push_back({3.8f, true, false, true, false});
+    };
+    return surroundings;
+}
+
 TEST(ProbeGrid, APointInTheGroundIsRaisedToItsSurface) {
-    const auto over_ground = [](const glm::vec3& a, const glm::vec3& b) {
-        return (a.z < 3.1f) == (b.z < 3.1f);
-    };
-    placement::Surroundings surroundings = space(over_ground);
-    surroundings.column_of_spaces = [](glm::vec2, std::vector<ColumnHit>& hits) {
-        hits = {{3.1f, true, false, true, false}};
-    };
-    // One lies underground; were it not, it would be the nearest to the cells at z = 0 to 4 m.
     const ProbeGrid grid =
-        placement::build_grid(0, 0, grid_probes({{2048, 2048, 2048}, {2048, 2048, 4200}}), surroundings);
-    const auto at_surface = cell_at(grid, {2, 2, 3.15f});
-    EXPECT_EQ(grid.cells[at_surface], 1) << "the part of the cell over the ground sees probe 1";
-    EXPECT_GT(grid.buried_cells, 256u);
+        placement::build_grid(0, 0, grid_probes({{4200, 2048, 5000}, {100, 100, 5000}}), ground_and_wall());
+    EXPECT_EQ(grid.cells[cell_at(grid, {2, 2, 3.85f})], 1) << "of its cell a tenth is over the ground";
+    EXPECT_EQ(grid.buried_cells, 0u);
     EXPECT_EQ(grid.blind_cells, 0u);
+}
+
+TEST(ProbeGrid, CellsUnderTheGroundAreCountedAndAskedWhereAProbeStandsThere) {
+    std::vector<Position> probes = {{4200, 2048, 5000}, {100, 100, 5000}, {60 * 1024, 2048, 1000}};
+    const ProbeGrid sealed = placement::build_grid(0, 0, grid_probes(probes), ground_and_wall());
+    EXPECT_GT(sealed.buried_cells, 256u);
+    EXPECT_EQ(sealed.blind_cells, 0u);
+    probes.emplace_back(100, 100, 1000);
+    const ProbeGrid open = placement::build_grid(0, 0, grid_probes(probes), ground_and_wall());
+    EXPECT_LT(open.buried_cells, sealed.buried_cells);
+    EXPECT_EQ(open.cells[cell_at(open, {2, 2, 0.2f})], 3);
 }
 
 TEST(ProbeGrid, AnInteriorsProbeIsNamedInsideOfItAlone) {

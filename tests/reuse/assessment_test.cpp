@@ -29,13 +29,14 @@ struct Yard {
         std::string name, role;
         int mesh = 0;
         glm::dvec3 at{};
+        double spacing = 0;
     };
     std::vector<Thing> things;
     std::vector<glm::dvec3> lamps, probes;
     std::vector<glm::vec4> colours = {{0.2f, 0.4f, 0.1f, 1}, {0.5f, 0.45f, 0.4f, 1}, {0.1f, 0.3f, 0.05f, 1}};
     float crown_m = 1.5f;
     double lamp_candela = 300;
-    static constexpr int room_mesh = 3, pane_mesh = 4;
+    static constexpr int block_mesh = 1, room_mesh = 3, pane_mesh = 4, boulder_mesh = 5, wall_mesh = 6;
     static constexpr double kit_m = 8;  // rooms stand on this lattice
 
     Yard(unsigned seed, bool lit, bool with_kit = false) {
@@ -53,12 +54,21 @@ struct Yard {
             add_kit(lit, [&] { return glm::dvec3(place(random), 0, -place(random)); });
     }
 
-    // One-sided rooms, wall on wall, and panes of glass.
+    // One-sided rooms, wall on wall, panes of glass, solids and walls with two sides, and volumes of each
+    // kind.
     void add_kit(bool lit, const std::function<glm::dvec3()>& somewhere) {
         for (const glm::dvec2& cell : {glm::dvec2(2, 3), {3, 3}, {2, 4}, {3, 4}, {2, 5}})
             things.push_back({"room", "", room_mesh, {kit_m * cell.x, 0, -kit_m * cell.y}});
         for (int n = 0; n < 6; ++n)
             things.push_back({"pane_" + std::to_string(n), "", pane_mesh, somewhere()});
+        for (int n = 0; n < 4; ++n) {
+            things.push_back(
+                {"boulder_" + std::to_string(n), n % 2 == 0 ? "" : "vegetation", boulder_mesh, somewhere()});
+            things.push_back({"wall_" + std::to_string(n), "", wall_mesh, somewhere()});
+        }
+        things.push_back({"empty", "no_probes", block_mesh, somewhere()});
+        things.push_back({"dense", "", boulder_mesh, {20, 0, -20}, 2.5});
+        things.push_back({"inside", "interior", block_mesh, {30, 0, -30}});  // of its probe
         if (lit)
             lamps.emplace_back(20, 4, -28);  // in the plane of a ceiling
         probes.emplace_back(18, 1.5, -27);
@@ -79,16 +89,20 @@ struct Yard {
         for (const glm::vec4& colour : colours)
             materials.push_back(b.add_material({.colour = colour, .double_sided = materials.size() == 2}));
         const std::vector<int> meshes = {
-            b.add_mesh(ground(130), materials[0]), b.add_mesh(box({-2, 0, -2}, {2, 5, 2}), materials[1]),
+            b.add_mesh(ground(130), materials[0]),
+            b.add_mesh(box({-2, 0, -2}, {2, 5, 2}), materials[1]),
             b.add_mesh(box({-crown_m, 1, -crown_m}, {crown_m, 5, crown_m}), materials[2]),
             b.add_mesh(room({0, 0, -8}, {8, 4, 0}), materials[1]),
-            b.add_mesh(quad({-3, 0, 0}, {3, 0, 0}, {3, 4, 0}, {-3, 4, 0}), glass_material(b))};
+            b.add_mesh(quad({-3, 0, 0}, {3, 0, 0}, {3, 4, 0}, {-3, 4, 0}), glass_material(b)),
+            b.add_mesh(box({-4, -1, -4}, {4, 3, 4}), materials[2]),
+            b.add_mesh(quad({-6, 0, 0}, {6, 0, 0}, {6, 4, 0}, {-6, 4, 0}), materials[2])};
         b.add_node({.mesh = meshes[0], .name = "ground"});
         for (const Thing& thing : things)
             b.add_node({.mesh = meshes[static_cast<std::size_t>(thing.mesh)],
                         .translation = thing.at,
                         .name = thing.name,
-                        .role = thing.role});
+                        .role = thing.role,
+                        .spacing = thing.spacing});
         for (const glm::dvec3& lamp : lamps)
             b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", lamp_candela}}),
                         .translation = lamp,
@@ -214,6 +228,8 @@ std::string edit(Yard& yard, std::mt19937& random) {
             yard.colours[random() % 3].y *= static_cast<float>(share(random));
             return "a material recoloured";
         case 5:
+            if (thing.role == "no_probes" || thing.role == "interior" || thing.spacing > 0)
+                return "nothing";
             thing.role = thing.role.empty() ? "vegetation" : "";
             return thing.name + " has another role";
         case 6:
