@@ -94,7 +94,8 @@ struct Candidate {
     std::optional<Intersection> at;    // if worked out; then both are order_of
 };
 
-// How far behind a back a front can be in its plane.
+// How far behind a back a front can be in its plane: rounding across, of rays at more than a quarter of a
+// degree to it.
 [[nodiscard]] inline float plane_slack(const Ray& ray, float back_m) {
     return query_slack(ray, back_m);
 }

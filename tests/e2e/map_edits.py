@@ -166,6 +166,119 @@ def add_probe(map_, rng):
     return f"a probe at {at}"
 
 
+# Triangles of a unit box, its middle at the ground, and of an upright sheet.
+BOX = (
+    [(x, y, z) for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)],
+    [
+        0,
+        2,
+        1,
+        1,
+        2,
+        3,
+        4,
+        5,
+        6,
+        5,
+        7,
+        6,
+        0,
+        1,
+        4,
+        1,
+        5,
+        4,
+        2,
+        6,
+        3,
+        3,
+        6,
+        7,
+        0,
+        4,
+        2,
+        2,
+        4,
+        6,
+        1,
+        3,
+        5,
+        3,
+        7,
+        5,
+    ],
+)
+SHEET = ([(-0.5, -0.5, 0), (0.5, -0.5, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0)], [0, 1, 2, 0, 2, 3])
+
+
+def _two_sided_mesh(map_, name, shape):
+    """The number of the mesh of that name, made when it is not there yet."""
+    document = map_.document
+    for number, mesh in enumerate(document["meshes"]):
+        if mesh.get("name") == name:
+            return number
+
+    def add(items, item):
+        document.setdefault(items, []).append(item)
+        return len(document[items]) - 1
+
+    def add_values(code, values, component, kind, **more):
+        map_.buffer += bytes(-len(map_.buffer) % 4)
+        data = struct.pack(f"<{len(values)}{code}", *values)
+        view = add("bufferViews", {"buffer": 0, "byteOffset": len(map_.buffer), "byteLength": len(data)})
+        map_.buffer += data
+        return add("accessors", {"bufferView": view, "componentType": component, "type": kind, **more})
+
+    points, indices = shape
+    bounds = {
+        "min": [min(p[k] for p in points) for k in range(3)],
+        "max": [max(p[k] for p in points) for k in range(3)],
+    }
+    position = add_values("f", [x for p in points for x in p], 5126, "VEC3", count=len(points), **bounds)
+    index = add_values("H", indices, 5123, "SCALAR", count=len(indices))
+    material = add(
+        "materials", {"doubleSided": True, "pbrMetallicRoughness": {"baseColorFactor": [0.4, 0.3, 0.2, 1]}}
+    )
+    primitive = {"attributes": {"POSITION": position}, "indices": index, "material": material}
+    return add("meshes", {"name": name, "primitives": [primitive]})
+
+
+def _place(map_, rng, name, shape, size, extras):
+    """A new thing beside a plant, or one of that name that is there already, moved."""
+    there = [number for number, node in enumerate(map_.nodes) if node.get("name", "").startswith(name)]
+    if there and rng.random() < 0.6:
+        return _move(map_, rng.choice(there), rng, 8)
+    place = map_.nodes[rng.choice(map_.plants())]["translation"]
+    node = {"name": f"{name}{len(map_.nodes)}", "translation": list(place), "scale": size}
+    if shape:
+        node["mesh"] = _two_sided_mesh(map_, "two-sided box" if shape is BOX else "two-sided sheet", shape)
+    if extras:
+        node["extras"] = extras
+    _shift(node, rng, 20)
+    map_.document["scenes"][map_.document.get("scene", 0)]["nodes"].append(len(map_.nodes))
+    map_.nodes.append(node)
+    return f"{node['name']} at {node['translation']}"
+
+
+def place_solid(map_, rng):
+    """A block with two sides, static or vegetation."""
+    size = [rng.uniform(2, 14), rng.uniform(3, 10), rng.uniform(2, 14)]
+    return _place(map_, rng, "solid_", BOX, size, rng.choice([None, {"bake_role": "vegetation"}]))
+
+
+def place_wall(map_, rng):
+    return _place(map_, rng, "wall_", SHEET, [rng.uniform(6, 20), rng.uniform(4, 12), 1], None)
+
+
+def place_volume(map_, rng):
+    """Of any kind; an interior takes a probe that stands in it."""
+    extras = rng.choice(
+        [{"bake_role": "no_probes"}, {"bake_spacing": rng.choice([2, 3])}, {"bake_role": "interior"}]
+    )
+    size = [rng.uniform(8, 24), rng.uniform(6, 20), rng.uniform(8, 24)]
+    return _place(map_, rng, "volume_", BOX, size, extras)
+
+
 def rename_node(map_, rng):
     number = rng.choice(map_.plants())
     map_.nodes[number]["name"] = f"renamed_{rng.randrange(10**6)}"
@@ -205,6 +318,9 @@ EDITS = (
     move_light,
     dim_light,
     add_probe,
+    place_solid,
+    place_wall,
+    place_volume,
     rename_node,
     reorder_buffer,
     touch,
