@@ -48,7 +48,7 @@ struct ColumnHit {
     bool up_facing = false;    // seen from above it is a front
     bool down_facing = false;  // seen from below it is a front
     bool wound_up = false;     // its corners are counter-clockwise seen from above, whatever its sides are
-    bool closed = false;       // it belongs to a surface that bounds a volume
+    bool body = false;         // it belongs to a closed surface whose fronts look outwards
 };
 
 struct Box {

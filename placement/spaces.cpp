@@ -50,7 +50,7 @@ void Spaces::add_line(std::int32_t x, std::int32_t y, float bottom_m, float top_
         // Past what stands there: the ground goes on over the bottom of a rock that is sunk into it.
         const auto sheet = std::find_if(line.hits.begin() + static_cast<std::ptrdiff_t>(below),
                                         line.hits.end(),
-                                        [](const ColumnHit& hit) { return !hit.closed; });
+                                        [](const ColumnHit& hit) { return !hit.body; });
         interval.under_back = sheet != line.hits.end() && sheet->wound_up;
         line.intervals.push_back(number);
         intervals_.push_back(interval);
@@ -147,7 +147,7 @@ bool Spaces::is_in_solid(const Line& line, const glm::vec2& at, std::size_t belo
     if (!closed) {
         const bool any_above = std::any_of(line.hits.begin() + static_cast<std::ptrdiff_t>(below),
                                            line.hits.end(),
-                                           [](const ColumnHit& hit) { return hit.closed; });
+                                           [](const ColumnHit& hit) { return hit.body; });
         closed = any_above && surroundings_.closed_around(glm::vec3(at, z_m)).has_value();
     }
     return *closed || (intervals_[interval].under_back && !intervals_[space_of(interval)].open);

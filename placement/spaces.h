@@ -35,7 +35,7 @@ class Spaces {
     // Part of a line between two surfaces: all of it is in one space.
     struct Interval {
         float low_m, high_m;      // within the heights that matter
-        bool under_back = false;  // the next surface above it that bounds no volume is seen from its back
+        bool under_back = false;  // the next surface above it that is of no body is seen from its back
         bool open = false;        // of a space: it leads to others that are under none, or holds a probe
         std::uint32_t space = 0;  // the first interval that is known to be of the same space
     };

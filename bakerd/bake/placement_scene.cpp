@@ -11,7 +11,7 @@ namespace {
 void store_hits(const std::vector<trace::ColumnHit>& found, std::vector<placement::ColumnHit>& hits) {
     hits.clear();
     for (const trace::ColumnHit& hit : found)
-        hits.push_back({hit.z_m, hit.up_facing, hit.down_facing, hit.wound_up, hit.closed});
+        hits.push_back({hit.z_m, hit.up_facing, hit.down_facing, hit.wound_up, hit.body});
 }
 
 }  // namespace

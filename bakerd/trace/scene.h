@@ -51,7 +51,7 @@ struct ColumnHit {
     bool up_facing = false;    // seen from above it is a front, or it has two fronts
     bool down_facing = false;  // seen from below it is a front, or it has two fronts
     bool wound_up = false;     // seen from above its corners are counter-clockwise
-    bool closed = false;       // it bounds a volume
+    bool body = false;         // of a closed part whose fronts look outwards
 
     auto operator<=>(const ColumnHit&) const = default;
 };

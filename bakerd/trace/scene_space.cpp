@@ -62,10 +62,12 @@ void Scene::column(glm::vec2 at,
                       at);
         if (!z_m)
             continue;
-        const bool closed = set.closed_part_of(crossing.id.triangle) != ClosedParts::none;
+        const std::uint32_t part = set.closed_part_of(crossing.id.triangle);
+        const bool closed = part != ClosedParts::none;
+        const bool body = closed && set.closed->part(part).outward;
         const bool two_sided = is_two_sided(*set.material, role_of(crossing.id.instance)) && !closed;
         const bool front = meets_front(crossing.id.instance, crossing.at, line);
-        hits.push_back({static_cast<float>(*z_m), front || two_sided, !front || two_sided, front, closed});
+        hits.push_back({static_cast<float>(*z_m), front || two_sided, !front || two_sided, front, body});
     }
     std::ranges::sort(hits, std::greater());
 }

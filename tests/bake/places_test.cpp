@@ -242,6 +242,14 @@ TEST(Floors, TheLowerSideOfASlabIsNone) {
     EXPECT_TRUE(std::ranges::all_of(all, [](const glm::vec3& p) { return p.z == 4; }));
 }
 
+// A rock sunk into a hill that the sea goes on under; the hill ends in the open, so that rays escape.
+TEST(Floors, UnderTheGroundAreNoneWhateverIsSunkIntoIt) {
+    Scene scene;  // the sea
+    scene.add(in_gltf(quad({-40, -40, 8}, {100, -40, 8}, {100, 100, 8}, {-40, 100, 8})), scene.plain, "hill");
+    scene.add(world_box({20, 20, 6}, {34, 34, 12}), scene.two_sided, "rock");
+    EXPECT_EQ(count_in(places(baked(scene.b)), {0, 0, 0}, {64, 64, 7}), 0u);
+}
+
 // Two floors at one height, one of them two-sided, and a ceiling that touches; in both orders.
 TEST(Floors, OfOneHeightDoNotDependOnTheirOrder) {
     Places found[2];

@@ -53,6 +53,7 @@ TEST(Column, StandsFromTheTopDownWithItsSides) {
             EXPECT_EQ(hits[n].z_m, expected[n].z_m);
             EXPECT_EQ(hits[n].up_facing, expected[n].up_facing) << n;
             EXPECT_EQ(hits[n].down_facing, expected[n].down_facing) << n;
+            EXPECT_EQ(hits[n].body, n == 1 || n == 2) << n;
         }
     }
 }
