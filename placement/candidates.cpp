@@ -1,5 +1,6 @@
 #include "placement/candidates.h"
 
+#include "placement/floors.h"
 #include "placement/units.h"
 
 #include <glm/common.hpp>
@@ -7,15 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
-#include <limits>
-#include <optional>
 #include <utility>
 
 namespace drtv::placement {
 namespace {
-
-// Surfaces closer together than this are one (a column through a shared edge meets both triangles).
-constexpr float same_surface_m = 1e-3f;
 
 // SplitMix64's finaliser (Steele, Lea, Flood 2014).
 std::uint64_t mixed(std::uint64_t x) {
@@ -85,61 +81,10 @@ class ColumnProposals {
     Candidate next_;
 };
 
-// Surfaces of a column at one height. A sheet is what is of no body (ColumnHit::body).
-struct Level {
-    float low_m = 0;
-    std::optional<float> floor_m;  // the lowest that faces up
-    bool floor_is_sheet = false;
-    bool ceiling = false;  // one of them faces down
-    bool sheet = false;
-    bool sheet_ceiling = false;
-};
-
-// From the bottom up, whatever the order of what lies at one height.
-std::vector<Level> levels_of(const std::vector<ColumnHit>& hits) {
-    std::vector<Level> levels;
-    for (std::size_t n = hits.size(); n-- > 0;) {
-        const ColumnHit& hit = hits[n];
-        if (levels.empty() || hit.z_m - levels.back().low_m >= same_surface_m)
-            levels.emplace_back().low_m = hit.z_m;
-        Level& level = levels.back();
-        if (hit.up_facing && !level.floor_m)
-            level.floor_m = hit.z_m;
-        level.floor_is_sheet = level.floor_is_sheet || (hit.up_facing && !hit.body);
-        level.ceiling = level.ceiling || hit.down_facing;
-        level.sheet = level.sheet || !hit.body;
-        level.sheet_ceiling = level.sheet_ceiling || (hit.down_facing && !hit.body);
-    }
-    return levels;
-}
-
-// Up to the level above; none when that one is left through its back, because then the space between is the
-// inside of something. Past the bodies that hang over a sheet the next sheet tells: what is sunk into the
-// ground has its bottom there, and the sea goes on below.
-float free_height(const std::vector<Level>& levels, std::size_t floor) {
-    if (floor + 1 == levels.size())
-        return std::numeric_limits<float>::infinity();
-    const Level& above = levels[floor + 1];
-    if (!above.ceiling)
-        return 0;
-    if (levels[floor].floor_is_sheet) {
-        const auto sheet = std::find_if(levels.begin() + static_cast<std::ptrdiff_t>(floor) + 1,
-                                        levels.end(),
-                                        [](const Level& level) { return level.sheet; });
-        if (sheet != levels.end() && !sheet->sheet_ceiling)
-            return 0;
-    }
-    return above.low_m - *levels[floor].floor_m;
-}
-
 void propose_on_ground(const std::vector<ColumnHit>& hits, ColumnProposals proposals) {
-    const std::vector<Level> levels = levels_of(hits);
-    for (std::size_t n = 0; n < levels.size(); ++n) {
-        if (!levels[n].floor_m)
-            continue;
-        const float free_m = free_height(levels, n);
-        if (free_m >= min_free_height_m)
-            proposals.add(double{*levels[n].floor_m} + std::min(probe_height_m, free_m / 2));
+    for (const Floor& floor : floors_of(hits)) {
+        if (floor.free_m >= min_free_height_m)
+            proposals.add(double{floor.z_m} + std::min(probe_height_m, floor.free_m / 2));
     }
 }
 
@@ -200,15 +145,19 @@ std::uint32_t lattice_class_of(std::int32_t a, std::int32_t b, std::uint32_t str
 }
 
 std::uint32_t lattice_stride(float lattice_m, float min_distance_m) {
+    const std::int64_t lattice = to_units(double{lattice_m});
+    const std::int64_t distance = to_units(double{min_distance_m});
     std::uint32_t stride = 1;
-    while (static_cast<float>(stride) * lattice_m < min_distance_m)
+    while (stride * lattice < distance)
         stride *= 2;
     return stride;
 }
 
+// In whole units, as distances are compared: then neighbours on it do not compete.
 float lattice_side_m(Kind kind, float min_distance_m) {
-    return kind == Kind::vegetation ? std::min(vegetation_lattice_m, 2 * min_distance_m)
-                                    : std::min(ground_lattice_m, min_distance_m);
+    const float distance_m = static_cast<float>(to_units(double{min_distance_m})) / units_per_m;
+    return kind == Kind::vegetation ? std::min(vegetation_lattice_m, 2 * distance_m)
+                                    : std::min(ground_lattice_m, distance_m);
 }
 
 std::vector<float> distances_kept(const Settings& settings, std::span<const SpacingVolume> spacings) {

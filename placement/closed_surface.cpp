@@ -57,7 +57,8 @@ class Turning {
         neighbours_.resize(triangles_.size());
         std::vector<std::size_t> counts(triangles_.size(), 0);
         visit_edges(half_edges_, [&](std::span<const HalfEdge> edge) {
-            if (parts_.closed[parts_.part_of[edge.front().triangle]])
+            if (std::ranges::all_of(
+                    edge, [&](const HalfEdge& half) { return parts_.closed[parts_.part_of[half.triangle]]; }))
                 return;
             if (edge.size() > 2)
                 problem = "is not a surface: some edge belongs to three triangles or more";
@@ -100,8 +101,8 @@ class Turning {
     Neighbours neighbours_;
 };
 
-// False where a part bounds nothing, as faces that lie on each other do.
-bool turn_outwards(ClosedSurface& surface, const MeshParts& parts) {
+// Leaves out parts that bound nothing, as the wall does that two boxes share.
+void turn_outwards(ClosedSurface& surface, const MeshParts& parts) {
     constexpr double rounding = 1e-12;  // of the parts' cubes
     std::vector<double> six_volumes(parts.closed.size(), 0);
     std::vector<double> sides(parts.closed.size(), 0);
@@ -119,15 +120,16 @@ bool turn_outwards(ClosedSurface& surface, const MeshParts& parts) {
                                 glm::distance(o, vertices[t.z])});
         six_volumes[part] += glm::dot(vertices[t.x] - o, glm::cross(vertices[t.y] - o, vertices[t.z] - o));
     }
-    for (std::size_t part = 0; part < sides.size(); ++part) {
-        if (std::abs(six_volumes[part]) <= rounding * sides[part] * sides[part] * sides[part])
-            return false;
-    }
+    std::vector<glm::uvec3> turned;
     for (std::size_t n = 0; n < triangles.size(); ++n) {
-        if (six_volumes[parts.part_of[n]] < 0)
-            turn(surface.triangles[n]);
+        const std::uint32_t part = parts.part_of[n];
+        if (std::abs(six_volumes[part]) <= rounding * sides[part] * sides[part] * sides[part])
+            continue;
+        turned.push_back(triangles[n]);
+        if (six_volumes[part] < 0)
+            turn(turned.back());
     }
-    return true;
+    surface.triangles = std::move(turned);
 }
 
 }  // namespace
@@ -150,7 +152,8 @@ tl::expected<ClosedSurface, std::string> closed_surface(std::span<const glm::dve
         if (auto turned = Turning(surface.triangles, parts, edges).run(); !turned)
             return tl::unexpected(turned.error());
     }
-    if (!turn_outwards(surface, parts))
+    turn_outwards(surface, parts);
+    if (surface.triangles.empty())
         return tl::unexpected(std::string("bounds no volume: its faces lie on each other, turned apart"));
     return surface;
 }

@@ -69,16 +69,35 @@ struct ClosedVolume::Mesh {
         constexpr double most = 256;
         side = static_cast<std::int32_t>(
             std::clamp(std::sqrt(static_cast<double>(surface.triangles.size()) / per_square), 1.0, most));
+        // Fans of long triangles lie in many squares each.
+        constexpr std::size_t most_entries = 16;  // for each triangle, of all together
+        while (side > 1 && entries() > most_entries * surface.triangles.size())
+            side /= 2;
         squares.resize(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
         for (std::uint32_t n = 0; n < surface.triangles.size(); ++n) {
-            const auto [a, b, c] = corners(n);
-            const glm::ivec2 first = square_of(glm::min(glm::min(a, b), c));
-            const glm::ivec2 last = square_of(glm::max(glm::max(a, b), c));
+            const auto [first, last] = squares_of(n);
             for (std::int32_t y = first.y; y <= last.y; ++y) {
                 for (std::int32_t x = first.x; x <= last.x; ++x)
                     squares[at(x, y)].push_back(n);
             }
         }
+    }
+
+    struct Range {
+        glm::ivec2 first, last;
+    };
+    [[nodiscard]] Range squares_of(std::uint32_t n) const {
+        const auto [a, b, c] = corners(n);
+        return {square_of(glm::min(glm::min(a, b), c)), square_of(glm::max(glm::max(a, b), c))};
+    }
+    [[nodiscard]] std::size_t entries() const {
+        std::size_t count = 0;
+        for (std::uint32_t n = 0; n < surface.triangles.size(); ++n) {
+            const auto [first, last] = squares_of(n);
+            count += static_cast<std::size_t>(last.x - first.x + 1) *
+                     static_cast<std::size_t>(last.y - first.y + 1);
+        }
+        return count;
     }
 
     struct Corners {

@@ -16,7 +16,7 @@ struct Manual {
 // An order that no change elsewhere in a sector disturbs much.
 [[nodiscard]] bool is_before(const Position& a, const Position& b);
 
-// Each place once, in that order. One that some name and others do not serves all.
+// Each place once, in that order.
 [[nodiscard]] std::vector<Manual> manual_probes(std::span<const ManualProbe> manual);
 
 // Whether its light is meant for the position.

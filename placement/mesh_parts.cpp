@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -76,19 +77,30 @@ std::vector<HalfEdge> half_edges(std::span<const glm::uvec3> triangles) {
     return edges;
 }
 
-bool is_balanced(std::span<const HalfEdge> edge) {
-    return 2 * static_cast<std::size_t>(std::ranges::count(edge, true, &HalfEdge::rising)) == edge.size();
-}
-
 MeshParts parts_by_edges(std::span<const glm::uvec3> triangles, std::span<const HalfEdge> half_edges) {
     DisjointSets sets(triangles.size());
-    std::vector<std::uint32_t> at_open_edges;
     visit_edges(half_edges, [&](std::span<const HalfEdge> edge) {
-        for (const HalfEdge& half : edge)
-            sets.join(edge.front().triangle, half.triangle);
-        if (!is_balanced(edge))
-            at_open_edges.push_back(edge.front().triangle);
+        if (edge.size() == 2)
+            sets.join(edge[0].triangle, edge[1].triangle);
     });
+    // Where more meet, parts that are balanced there by themselves only touch each other.
+    std::vector<std::uint32_t> at_open_edges;
+    for (const bool closing : {false, true}) {
+        visit_edges(half_edges, [&](std::span<const HalfEdge> edge) {
+            if (edge.size() == 2 && !closing)
+                return;
+            std::map<std::uint32_t, std::int64_t> balances;  // by part
+            for (const HalfEdge& half : edge)
+                balances[sets.root_of(half.triangle)] += half.rising ? 1 : -1;
+            std::erase_if(balances, [](const auto& entry) { return entry.second == 0; });
+            for (const auto& [part, balance] : balances) {
+                if (closing)
+                    at_open_edges.push_back(part);
+                else
+                    sets.join(balances.begin()->first, part);
+            }
+        });
+    }
     MeshParts parts;
     parts.part_of.resize(triangles.size(), no_part);
     for (std::uint32_t n = 0; n < triangles.size(); ++n) {

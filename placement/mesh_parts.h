@@ -1,4 +1,5 @@
-// Which triangles of a mesh hang together by edges, and which of these parts are closed.
+// Which triangles of a mesh hang together by edges, and which of these parts are closed. Closed parts that
+// share an edge only touch.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -41,15 +42,12 @@ void visit_edges(std::span<const HalfEdge> half_edges, Visit visit) {
     }
 }
 
-// Whether the edge is passed as often one way as the other.
-[[nodiscard]] bool is_balanced(std::span<const HalfEdge> edge);
-
 inline constexpr std::uint32_t no_part = UINT32_MAX;
 
 struct MeshParts {
     std::vector<std::uint32_t> part_of;  // by triangle; no_part of one with two equal corners
-    // By part, in the order of their first triangles: each edge is balanced, so that winding numbers around
-    // it are whole.
+    // By part, in the order of their first triangles: it passes each edge as often one way as the other, so
+    // that winding numbers around it are whole.
     std::vector<bool> closed;
 };
 [[nodiscard]] MeshParts parts_by_edges(std::span<const glm::uvec3> triangles,

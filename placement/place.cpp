@@ -6,6 +6,7 @@
 
 #include "placement/candidates.h"
 #include "placement/manual.h"
+#include "placement/plan_index.h"
 #include "placement/solid_test.h"
 #include "placement/thinning.h"
 #include "placement/units.h"
@@ -32,7 +33,10 @@ class Placer {
         : input_(input),
           surroundings_(surroundings),
           settings_(settings),
-          manual_(manual_probes(input.manual)) {}
+          manual_(manual_probes(input.manual)) {
+        for (std::size_t n = 0; n < manual_.size(); ++n)
+            manual_index_.add(manual_[n].position, n);
+    }
 
     tl::expected<Placement, std::string> run() {
         for (const Manual& probe : manual_) {
@@ -88,16 +92,24 @@ class Placer {
     }
 
     [[nodiscard]] bool near_manual(const Position& position, float distance_m) const {
-        return std::ranges::any_of(manual_, [&](const Manual& probe) {
+        return manual_index_.any_near(position, distance_m, [&](std::size_t n) {
+            const Manual& probe = manual_[n];
             return squared_distance(position, probe.position) < squared_units(distance_m) &&
                    serves(probe, position) && sees(position, probe.position);
         });
     }
 
     [[nodiscard]] bool near_kept(const Position& position, float distance_m) const {
-        return near_manual(position, distance_m) || std::ranges::any_of(kept_, [&](const Candidate& other) {
+        return near_manual(position, distance_m) ||
+               kept_index_.any_near(position, distance_m, [&](std::size_t n) {
+                   const Candidate& other = kept_[n];
                    return is_near(position, other.position, std::min(distance_m, other.min_distance_m));
                });
+    }
+
+    void keep(const Candidate& candidate) {
+        kept_index_.add(candidate.position, kept_.size());
+        kept_.push_back(candidate);
     }
 
     // The nearest free place within half the distance, in the same sector.
@@ -140,7 +152,7 @@ class Placer {
                 continue;
             const StandsAt at = stands(candidate.position);
             if (at.stand == Stand::free)
-                kept_.push_back(candidate);
+                keep(candidate);
             else
                 buried.push_back({candidate, at});
         }
@@ -149,6 +161,7 @@ class Placer {
 
     void move_out(const std::vector<Buried>& buried) {
         std::vector<Candidate> higher;
+        PlanIndex higher_index;
         std::vector<Candidate> moved;
         Report& report = placement_.report;
         for (const auto& [candidate, at] : buried) {
@@ -164,18 +177,20 @@ class Placer {
             Candidate at_place = candidate;
             at_place.position = *place;
             at_place.moved = true;
-            const auto takes_its_place = [&](const Candidate& other) {
+            const auto takes_its_place = [&](std::size_t n) {
                 return is_near(
-                    *place, other.position, std::min(candidate.min_distance_m, other.min_distance_m));
+                    *place, higher[n].position, std::min(candidate.min_distance_m, higher[n].min_distance_m));
             };
-            const bool yields = std::ranges::any_of(higher, takes_its_place);
+            const bool yields = higher_index.any_near(*place, candidate.min_distance_m, takes_its_place);
+            higher_index.add(*place, higher.size());
             higher.push_back(at_place);
             if (yields || near_kept(*place, candidate.min_distance_m))
                 continue;
             report.moved_out += ours ? 1 : 0;
             moved.push_back(at_place);
         }
-        kept_.insert(kept_.end(), moved.begin(), moved.end());
+        for (const Candidate& candidate : moved)
+            keep(candidate);
     }
 
     // This sector's own probes, no more than find room beside the manual ones.
@@ -195,7 +210,9 @@ class Placer {
     const Surroundings& surroundings_;
     const Settings& settings_;
     const std::vector<Manual> manual_;  // of the whole map
-    std::vector<Candidate> kept_;       // by priority, the moved ones last
+    PlanIndex manual_index_;
+    std::vector<Candidate> kept_;  // by priority, the moved ones last
+    PlanIndex kept_index_;
     Placement placement_;
 };
 

@@ -156,7 +156,7 @@ struct ManualProbe {
 // Inside of it automatic probes keep another distance.
 struct SpacingVolume {
     ClosedVolume volume;
-    float min_distance_m = 0;  // 1 to 16
+    float min_distance_m = 0;  // 1 to 8
 };
 
 struct Input {

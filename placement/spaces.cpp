@@ -42,18 +42,23 @@ void Spaces::add_line(std::int32_t x, std::int32_t y, float bottom_m, float top_
     std::ranges::reverse(line.hits);
     for (std::size_t below = 0; below <= line.hits.size(); ++below) {
         const auto number = static_cast<std::uint32_t>(intervals_.size());
-        Interval interval{bottom_m, top_m, false, false, number};
+        Interval interval{bottom_m, top_m, false, false, false, number};
         if (below > 0)
             interval.low_m = std::max(bottom_m, line.hits[below - 1].z_m);
         if (below < line.hits.size())
             interval.high_m = std::min(top_m, line.hits[below].z_m);
-        // Past what stands there: the ground goes on over the bottom of a rock that is sunk into it.
-        const auto sheet = std::find_if(line.hits.begin() + static_cast<std::ptrdiff_t>(below),
-                                        line.hits.end(),
-                                        [](const ColumnHit& hit) { return !hit.body; });
-        interval.under_back = sheet != line.hits.end() && sheet->wound_up;
         line.intervals.push_back(number);
         intervals_.push_back(interval);
+    }
+    // Past bodies: the ground goes on over the bottom of a rock that is sunk into it.
+    bool under_back = false;
+    bool under_body = false;
+    for (std::size_t below = line.hits.size(); below-- > 0;) {
+        const ColumnHit& above = line.hits[below];
+        under_back = above.body ? under_back : above.wound_up;
+        under_body = under_body || above.body;
+        intervals_[line.intervals[below]].under_back = under_back;
+        intervals_[line.intervals[below]].under_body = under_body;
     }
 }
 
@@ -76,32 +81,41 @@ void Spaces::join_neighbours() {
 
 // Of intervals that are under no back nothing is asked but whether they lead under one.
 void Spaces::join(std::int32_t x, std::int32_t y, std::int32_t other_x, std::int32_t other_y) {
-    for (const std::uint32_t a : line(x, y).intervals) {
-        for (const std::uint32_t b : line(other_x, other_y).intervals) {
-            const float low_m = std::max(intervals_[a].low_m, intervals_[b].low_m);
-            const float high_m = std::min(intervals_[a].high_m, intervals_[b].high_m);
-            const bool both = intervals_[a].under_back && intervals_[b].under_back;
-            const bool one = intervals_[a].under_back || intervals_[b].under_back;
-            if (!one || high_m - low_m < least_overlap_m || space_of(a) == space_of(b))
-                continue;
-            const std::uint32_t under = space_of(intervals_[a].under_back ? a : b);
-            if (!both && intervals_[under].open)
-                continue;
+    const std::vector<std::uint32_t>& here = line(x, y).intervals;
+    const std::vector<std::uint32_t>& there = line(other_x, other_y).intervals;
+    // Both from the bottom up: which ends first makes way.
+    for (std::size_t n = 0, m = 0; n < here.size() && m < there.size();) {
+        const std::uint32_t a = here[n];
+        const std::uint32_t b = there[m];
+        const float low_m = std::max(intervals_[a].low_m, intervals_[b].low_m);
+        const float high_m = std::min(intervals_[a].high_m, intervals_[b].high_m);
+        if (high_m - low_m >= least_overlap_m) {
             const float z_m = (low_m + high_m) / 2;
-            const glm::vec3 from(line_at(x, y), z_m);
-            const glm::vec3 to(line_at(other_x, other_y), z_m);
-            if (surroundings_.separated(from, to))
-                continue;
-            if (!both) {
-                intervals_[under].open = true;
-                continue;
-            }
-            const std::uint32_t first = std::min(space_of(a), space_of(b));
-            const std::uint32_t second = std::max(space_of(a), space_of(b));
-            intervals_[second].space = first;
-            intervals_[first].open = intervals_[first].open || intervals_[second].open;
+            join(a, glm::vec3(line_at(x, y), z_m), b, glm::vec3(line_at(other_x, other_y), z_m));
         }
+        if (intervals_[a].high_m < intervals_[b].high_m)
+            ++n;
+        else
+            ++m;
     }
+}
+
+void Spaces::join(std::uint32_t a, const glm::vec3& in_a, std::uint32_t b, const glm::vec3& in_b) {
+    const bool both = intervals_[a].under_back && intervals_[b].under_back;
+    const bool one = intervals_[a].under_back || intervals_[b].under_back;
+    if (!one || space_of(a) == space_of(b))
+        return;
+    const std::uint32_t under = space_of(intervals_[a].under_back ? a : b);
+    if ((!both && intervals_[under].open) || surroundings_.separated(in_a, in_b))
+        return;
+    if (!both) {
+        intervals_[under].open = true;
+        return;
+    }
+    const std::uint32_t first = std::min(space_of(a), space_of(b));
+    const std::uint32_t second = std::max(space_of(a), space_of(b));
+    intervals_[second].space = first;
+    intervals_[first].open = intervals_[first].open || intervals_[second].open;
 }
 
 // Whatever of the four lines around a place it sees at its height.
@@ -145,10 +159,8 @@ bool Spaces::is_in_solid(const Line& line, const glm::vec2& at, std::size_t belo
     const std::uint32_t interval = line.intervals[below];
     std::optional<bool>& closed = closed_[interval];
     if (!closed) {
-        const bool any_above = std::any_of(line.hits.begin() + static_cast<std::ptrdiff_t>(below),
-                                           line.hits.end(),
-                                           [](const ColumnHit& hit) { return hit.body; });
-        closed = any_above && surroundings_.closed_around(glm::vec3(at, z_m)).has_value();
+        closed =
+            intervals_[interval].under_body && surroundings_.closed_around(glm::vec3(at, z_m)).has_value();
     }
     return *closed || (intervals_[interval].under_back && !intervals_[space_of(interval)].open);
 }

@@ -36,6 +36,7 @@ class Spaces {
     struct Interval {
         float low_m, high_m;      // within the heights that matter
         bool under_back = false;  // the next surface above it that is of no body is seen from its back
+        bool under_body = false;  // some body is above
         bool open = false;        // of a space: it leads to others that are under none, or holds a probe
         std::uint32_t space = 0;  // the first interval that is known to be of the same space
     };
@@ -47,6 +48,8 @@ class Spaces {
     void add_line(std::int32_t x, std::int32_t y, float bottom_m, float top_m);
     void join_neighbours();
     void join(std::int32_t x, std::int32_t y, std::int32_t other_x, std::int32_t other_y);
+    // By a straight way between the two places.
+    void join(std::uint32_t a, const glm::vec3& in_a, std::uint32_t b, const glm::vec3& in_b);
     [[nodiscard]] std::uint32_t space_of(std::uint32_t interval);
     [[nodiscard]] static std::size_t surfaces_below(const Line& line, float z_m);
     [[nodiscard]] bool is_in_solid(const Line& line, const glm::vec2& at, std::size_t below, float z_m);

@@ -1,5 +1,6 @@
 #include "placement/thinning.h"
 
+#include "placement/plan_index.h"
 #include "placement/units.h"
 
 #include <algorithm>
@@ -21,12 +22,17 @@ class Thinner {
 
     // Adds those that no kept one takes the place of, up to so many in all.
     void fill(float growth, bool by_sight, std::size_t max_count, std::vector<std::size_t>& kept) {
+        PlanIndex index;
+        for (const std::size_t n : kept)
+            index.add(own_[n].position, n);
         for (std::size_t n = 0; n < own_.size() && kept.size() < max_count; ++n) {
             const auto takes_its_place = [&](std::size_t other) {
                 return n == other || (are_near(n, other, growth) && (!by_sight || see(n, other)));
             };
-            if (std::ranges::none_of(kept, takes_its_place))
-                kept.push_back(n);
+            if (index.any_near(own_[n].position, own_[n].min_distance_m * growth, takes_its_place))
+                continue;
+            index.add(own_[n].position, n);
+            kept.push_back(n);
         }
     }
 

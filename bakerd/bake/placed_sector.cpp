@@ -39,14 +39,14 @@ tl::expected<void, std::string> store_positions(const std::vector<placement::Pla
     const std::int32_t highest = std::max_element(probes.begin(), probes.end(), by_height)->position.z;
     sector.z_origin_units = lowest;
     const auto step_of = [&](std::int32_t z) {
-        return (z - lowest + ((1 << sector.z_shift) >> 1)) >> sector.z_shift;
+        return (std::int64_t{z} - lowest + ((1 << sector.z_shift) >> 1)) >> sector.z_shift;
     };
     while (step_of(highest) > 65535) {
         if (++sector.z_shift > max_z_shift)
             return tl::unexpected(fmt::format("sector ({}, {}): its probes span {} m of height",
                                               sector.i,
                                               sector.j,
-                                              (highest - lowest) / position_units_per_m));
+                                              (std::int64_t{highest} - lowest) / position_units_per_m));
     }
     constexpr std::int32_t side = sector_size_m * position_units_per_m;
     for (const placement::PlacedProbe& placed : probes) {
@@ -118,6 +118,7 @@ tl::expected<PlacedSector, std::string> place_sector(const PlacementTags& tags,
         placed.moved.push_back(probe.moved);
     for (const placement::BuriedManual& buried : placement->buried_manual)
         warn_of_buried_probe(scene.map(), buried, placed.warnings);
+    warn_of_covered_ground(scene, coordinate, placed.warnings);
     warn_of_empty_places(scene.map(), coordinate, placement->dropped_in, placed.warnings);
     return placed;
 }

@@ -2,6 +2,7 @@
 
 #include "bakerd/bake/interiors.h"
 #include "bakerd/bake/shown_names.h"
+#include "placement/candidates.h"
 #include "placement/units.h"
 
 #include <fmt/format.h>
@@ -109,6 +110,40 @@ void warn_of_buried_probe(const map::Map& map,
             how_it_stands(buried.stand),
             shown_object(map, buried.thing),
             buried.stand == placement::Stand::in_solid ? ", whose faces are closed and look outwards" : ""));
+    }
+}
+
+void warn_of_covered_ground(const trace::Scene& scene,
+                            map::SectorCoordinate sector,
+                            std::vector<std::string>& warnings) {
+    constexpr std::int32_t lines = 8;  // along each axis
+    constexpr float side_m = static_cast<float>(map::sector_size_m);
+    std::size_t grounds = 0;
+    std::map<std::uint32_t, std::size_t> covered;  // by thing
+    std::vector<trace::ColumnHit> hits;
+    for (std::int32_t n = 0; n < lines * lines; ++n) {
+        const glm::vec2 share = (glm::vec2(n % lines, n / lines) + 0.5f) / float{lines};
+        const glm::vec2 at = (glm::vec2(sector.i, sector.j) + share) * side_m;
+        scene.column(at, hits);
+        const auto floor = std::ranges::find_if(hits.rbegin(), hits.rend(), [](const trace::ColumnHit& hit) {
+            return hit.up_facing && !hit.body;
+        });
+        if (floor == hits.rend())
+            continue;
+        ++grounds;
+        if (const auto thing = scene.closed_around(glm::vec3(at, floor->z_m + placement::probe_height_m)))
+            ++covered[*thing];
+    }
+    for (const auto& [thing, count] : covered) {
+        if (2 * count <= grounds)
+            continue;
+        warnings.push_back(fmt::format(
+            "sector ({}, {}): most of its ground lies inside {}, which is closed and looks outwards, "
+            "and has no probes: leave a sky dome out of the bake with bake_role 'ignore', and turn the "
+            "faces of a hall inwards",
+            sector.i,
+            sector.j,
+            shown_object(scene.map(), thing)));
     }
 }
 

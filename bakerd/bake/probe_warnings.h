@@ -29,6 +29,12 @@ void warn_of_buried_probe(const map::Map& map,
                           const placement::BuriedManual& buried,
                           std::vector<std::string>& warnings);
 
+// Of a thing that is closed and looks outwards, and that most of the sector's ground lies inside of: a sky
+// dome, or a hall whose faces are turned.
+void warn_of_covered_ground(const trace::Scene& scene,
+                            map::SectorCoordinate sector,
+                            std::vector<std::string>& warnings);
+
 // Of places for probes that lie in solids, with those in which most of them lie; `dropped_in` names one for
 // each place.
 void warn_of_empty_places(const map::Map& map,

@@ -8,6 +8,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <set>
 
 namespace drtv::bake {
 namespace {
@@ -51,6 +52,8 @@ tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<co
     world->sectors_ = std::move(*sectors);
     if (auto opened = world->open_volumes(); !opened)
         return tl::unexpected(opened.error());
+    if (auto checked = world->check_spacings(); !checked)
+        return tl::unexpected(checked.error());
     world->tag_probes();
     return world;
 }
@@ -80,6 +83,20 @@ tl::expected<void, std::string> World::open_volumes() {
         }
     }
     return {};
+}
+
+// Every distance makes placement look farther around each sector.
+tl::expected<void, std::string> World::check_spacings() const {
+    constexpr std::size_t most_distances = 8;
+    std::set<float> distances;
+    for (const placement::SpacingVolume& spacing : tags_.spacings)
+        distances.insert(spacing.min_distance_m);
+    if (distances.size() <= most_distances)
+        return {};
+    return tl::unexpected(
+        fmt::format("the map's bake_spacing volumes keep {} different distances, over the limit of {}",
+                    distances.size(),
+                    most_distances));
 }
 
 void World::tag_probes() {

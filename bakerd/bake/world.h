@@ -31,7 +31,7 @@ struct Surroundings {
 class World {
   public:
     // With a shelf, the geometry of meshes that a map before had is used again. Fails with a sentence when
-    // the map is too large or a `no_probes` or `interior` volume is not closed.
+    // the map is too large, a volume is not closed, or bake_spacing has too many values.
     [[nodiscard]] static tl::expected<std::shared_ptr<World>, std::string> open(
         std::shared_ptr<const trace::Device> device,
         std::shared_ptr<const map::Map> map,
@@ -86,6 +86,7 @@ class World {
         bool operator==(const SampleKey&) const = default;
     };
     [[nodiscard]] tl::expected<void, std::string> open_volumes();
+    [[nodiscard]] tl::expected<void, std::string> check_spacings() const;
     void tag_probes();  // with the interiors that name them
 
     World(std::shared_ptr<const trace::Device> device,

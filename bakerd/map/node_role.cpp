@@ -20,9 +20,9 @@ constexpr std::array<RoleName, 6> role_names = {{{"static", NodeRole::fixed},
                                                  {"no_probes", NodeRole::no_probes},
                                                  {"interior", NodeRole::interior}}};
 
-// Placement's range of distances.
+// Beyond the upper one every sector would look far around itself (placement::decision_margin_m).
 constexpr double min_spacing_m = 1;
-constexpr double max_spacing_m = 16;
+constexpr double max_spacing_m = 8;
 
 tl::expected<void, std::string> read_role(const tinygltf::Value& value, NodeRole& role) {
     if (!value.IsString())

@@ -40,6 +40,9 @@ ItemDigest digest_of_interior(const bake::InteriorVolume& interior) {
     hasher.add(interior.stored.shift);
     hasher.add_sized(interior.stored.vertices);
     hasher.add_sized(interior.stored.triangles);
+    // The file's vertices are rounded; placement asks the mesh as it is.
+    hasher.add_sized(interior.volume.vertices());
+    hasher.add_sized(interior.volume.triangles());
     return half(hasher.finish());
 }
 

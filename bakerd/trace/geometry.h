@@ -36,6 +36,7 @@ class MeshBvh {
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
     [[nodiscard]] const InstanceShape& shape() const { return shape_; }
     [[nodiscard]] Kinds kinds() const { return kinds_of(sets_); }
+    [[nodiscard]] const ClosedParts* closed() const { return closed_.get(); }
     // Not one of a triangle set: there to widen the box.
     [[nodiscard]] bool is_margin(std::uint32_t embree_geometry) const {
         return embree_geometry == sets_.size();

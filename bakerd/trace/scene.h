@@ -13,9 +13,12 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 struct RTCSceneTy;
@@ -45,7 +48,8 @@ struct Hit {
     const TriangleSet* set = nullptr;  // of the triangle
 };
 
-// One crossing of a vertical line. What bounds a volume has one front, whatever its material says.
+// One crossing of a vertical line. A closed part that looks outwards has one front, whatever its material
+// says.
 struct ColumnHit {
     float z_m = 0;
     bool up_facing = false;    // seen from above it is a front, or it has two fronts
@@ -60,7 +64,7 @@ struct ColumnHit {
 struct SideHit {
     float distance_m = 0;
     bool front = false;  // the ray met the counter-clockwise side
-    bool sheet = false;  // it has two fronts and bounds no volume
+    bool sheet = false;  // it has two fronts, and is of no closed part that looks outwards
 };
 
 // Square of the world, metres.
@@ -153,6 +157,7 @@ class Scene {
     struct alignas(64) Instance {
         glm::mat4x3 world_from_object;
         const MeshBvh* mesh;  // none of one that is kept in world space
+        const ClosedParts* closed;
         std::uint32_t object;
         map::Role role;
         bool mirrored;
@@ -169,6 +174,10 @@ class Scene {
     struct Nearest;
     [[nodiscard]] Nearest nearest_surface(const glm::vec3& point, float most_m, bool only_walls) const;
     struct Around;
+    [[nodiscard]] map::Bounds bounds_of(std::uint32_t instance, std::uint32_t part) const;
+    [[nodiscard]] const ClosedParts* closed_of(std::uint32_t instance) const {
+        return instances_[instance].closed;
+    }
     void add_around(const Crossing& crossing, bool front, std::vector<Around>& parts) const;
     [[nodiscard]] std::optional<std::uint32_t> closed_around(const Ray& line) const;
     [[nodiscard]] std::vector<Crossing> panes(const Ray& ray, Collected wanted, bool to_surface) const;
@@ -190,6 +199,9 @@ class Scene {
     // geometry ids follow those of all instances.
     std::vector<std::unique_ptr<TriangleSet>> world_sets_;
     std::vector<std::shared_ptr<const ClosedParts>> closed_;  // of their meshes
+    mutable std::mutex part_bounds_mutex_;
+    // World, by instance and part, as they were asked for; guarded by part_bounds_mutex_.
+    mutable std::map<std::pair<std::uint32_t, std::uint32_t>, map::Bounds> part_bounds_;
     map::Bounds bounds_;
     Kinds kinds_;
     RTCSceneTy* handle_ = nullptr;

@@ -74,8 +74,12 @@ void Scene::add_instance(std::uint32_t object, const MeshBvh& bvh) {
     rtcCommitGeometry(instance);
     rtcAttachGeometryByID(handle_, instance, static_cast<unsigned>(instances_.size()));
     rtcReleaseGeometry(instance);
-    instances_.push_back(
-        {world_from_object, &bvh, object, map_->objects[object].role, is_mirroring(world_from_object)});
+    instances_.push_back({world_from_object,
+                          &bvh,
+                          bvh.closed(),
+                          object,
+                          map_->objects[object].role,
+                          is_mirroring(world_from_object)});
 }
 
 void Scene::add_in_world_space(std::uint32_t object,
@@ -102,7 +106,8 @@ void Scene::add_in_world_space(std::uint32_t object,
         world_sets_.push_back(std::move(set));
     }
     closed_.push_back(std::move(closed));
-    instances_.push_back({placed.world_from_object, nullptr, object, placed.role, mirrored});
+    instances_.push_back(
+        {placed.world_from_object, nullptr, closed_.back().get(), object, placed.role, mirrored});
 }
 
 Scene::~Scene() {

@@ -6,33 +6,26 @@
 #include <embree3/rtcore.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 
 namespace drtv::trace {
 namespace {
-
-map::Bounds transformed(const map::Bounds& bounds, const glm::mat4x3& world_from_object) {
-    map::Bounds world;
-    for (unsigned n = 0; n < 8; ++n) {
-        const glm::vec3 corner((n & 1) != 0 ? bounds.high.x : bounds.low.x,
-                               (n & 2) != 0 ? bounds.high.y : bounds.low.y,
-                               (n & 4) != 0 ? bounds.high.z : bounds.low.z);
-        world.extend(world_from_object * glm::vec4(corner, 1));
-    }
-    return world;
-}
 
 bool holds(const map::Bounds& outer, const map::Bounds& inner) {
     return glm::all(glm::lessThanEqual(outer.low, inner.low)) &&
            glm::all(glm::greaterThanEqual(outer.high, inner.high));
 }
 
-double volume_of(const map::Bounds& bounds) {
+// In the world, however the object is turned.
+double volume_of(const map::Bounds& bounds, const glm::mat4x3& world_from_object) {
     const glm::dvec3 size(bounds.high - bounds.low);
-    return size.x * size.y * size.z;
+    return size.x * size.y * size.z * std::abs(glm::determinant(glm::dmat3(world_from_object)));
 }
 
 }  // namespace
@@ -62,10 +55,8 @@ void Scene::column(glm::vec2 at,
                       at);
         if (!z_m)
             continue;
-        const std::uint32_t part = set.closed_part_of(crossing.id.triangle);
-        const bool closed = part != ClosedParts::none;
-        const bool body = closed && set.closed->part(part).outward;
-        const bool two_sided = is_two_sided(*set.material, role_of(crossing.id.instance)) && !closed;
+        const bool body = set.is_of_body(crossing.id.triangle);
+        const bool two_sided = is_two_sided(*set.material, role_of(crossing.id.instance)) && !body;
         const bool front = meets_front(crossing.id.instance, crossing.at, line);
         hits.push_back({static_cast<float>(*z_m), front || two_sided, !front || two_sided, front, body});
     }
@@ -77,7 +68,7 @@ struct Scene::Around {
     std::uint32_t instance;
     std::uint32_t part;
     bool outward;
-    map::Bounds bounds;  // world
+    double volume;  // of its bounds
     int winding;
 };
 
@@ -92,8 +83,28 @@ void Scene::add_around(const Crossing& crossing, bool front, std::vector<Around>
         }
     }
     const ClosedPart& closed = set.closed->part(part);
-    const map::Bounds bounds = transformed(closed.bounds, world_from_object(crossing.id.instance));
-    parts.push_back({crossing.id.instance, part, closed.outward, bounds, step});
+    const double volume = volume_of(closed.bounds, world_from_object(crossing.id.instance));
+    parts.push_back({crossing.id.instance, part, closed.outward, volume, step});
+}
+
+// Around its own corners: those of its turned box would say nothing of what holds what.
+map::Bounds Scene::bounds_of(std::uint32_t instance, std::uint32_t part) const {
+    const std::lock_guard lock(part_bounds_mutex_);
+    const auto [known, added] = part_bounds_.try_emplace({instance, part});
+    if (!added)
+        return known->second;
+    const map::Mesh& mesh = map_->meshes[map_->objects[object_index(instance)].mesh];
+    const ClosedParts& closed = *closed_of(instance);
+    const glm::dmat4x3 place(world_from_object(instance));
+    for (std::uint32_t n = 0; n < mesh.primitives.size(); ++n) {
+        const map::Primitive& primitive = mesh.primitives[n];
+        for (std::uint32_t t = 0; t < primitive.triangles.size(); ++t) {
+            for (glm::length_t k = 0; closed.part_of(n, t) == part && k < 3; ++k)
+                known->second.extend(
+                    glm::vec3(place * glm::dvec4(primitive.positions[primitive.triangles[t][k]], 1)));
+        }
+    }
+    return known->second;
 }
 
 std::optional<std::uint32_t> Scene::closed_around(const Ray& line) const {
@@ -105,14 +116,14 @@ std::optional<std::uint32_t> Scene::closed_around(const Ray& line) const {
     for (const Around& part : parts) {
         if (part.outward) {
             winding += part.winding;
-            const bool smaller =
-                innermost == nullptr || volume_of(part.bounds) < volume_of(innermost->bounds);
+            const bool smaller = innermost == nullptr || part.volume < innermost->volume;
             if (part.winding > 0 && smaller)
                 innermost = &part;
             continue;
         }
         const bool is_cavity = std::ranges::any_of(parts, [&](const Around& other) {
-            return other.outward && other.winding > 0 && holds(other.bounds, part.bounds);
+            return other.outward && other.winding > 0 &&
+                   holds(bounds_of(other.instance, other.part), bounds_of(part.instance, part.part));
         });
         winding += is_cavity ? part.winding : 0;
     }
@@ -140,10 +151,10 @@ std::vector<SideHit> Scene::sides_met(const Ray& ray) const {
     std::vector<SideHit> sides;
     for (const Crossing& crossing : all_crossings(ray, Collected::of_spaces)) {
         const TriangleSet& set = set_of(crossing.id.instance, crossing.id.set);
-        const bool closed = set.closed_part_of(crossing.id.triangle) != ClosedParts::none;
         sides.push_back({static_cast<float>(crossing.at.distance_m),
                          meets_front(crossing.id.instance, crossing.at, ray),
-                         is_two_sided(*set.material, role_of(crossing.id.instance)) && !closed});
+                         is_two_sided(*set.material, role_of(crossing.id.instance)) &&
+                             !set.is_of_body(crossing.id.triangle)});
     }
     return sides;
 }

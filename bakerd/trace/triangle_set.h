@@ -45,6 +45,11 @@ struct TriangleSet {
     [[nodiscard]] std::uint32_t closed_part_of(std::uint32_t n) const {
         return closed->part_of(primitive_index, triangle_of(n));
     }
+    // Whether that part looks outwards.
+    [[nodiscard]] bool is_of_body(std::uint32_t n) const {
+        const std::uint32_t part = closed_part_of(n);
+        return part != ClosedParts::none && closed->part(part).outward;
+    }
 };
 
 [[nodiscard]] inline ObjectTriangle corners_of(const TriangleSet& set, std::uint32_t triangle_of_set) {

@@ -30,40 +30,6 @@ struct Mean {
 
 constexpr std::size_t cells_of_level = grid_size * grid_size;
 
-const Light* light_at(const RegionSector& sector, std::size_t cell) {
-    const std::uint8_t probe = sector.grid.cells[cell];
-    return probe < sector.light.size() ? &sector.light[probe] : nullptr;
-}
-
-void add_step(const Light* here, const Light* next, Mean& steps) {
-    if (here != nullptr && next != nullptr)
-        steps.add(step_between(*here, *next));
-}
-
-// From a cell to the next one to the east (axis 0) or north (axis 1).
-std::size_t stride_of(std::size_t axis) {
-    return axis == 0 ? 1 : grid_size;
-}
-
-void add_steps_inside(const RegionSector& sector, std::size_t axis, Mean& steps) {
-    const std::size_t stride = stride_of(axis);
-    for (std::size_t cell = 0; cell < grid_cell_count; ++cell) {
-        const bool last = cell / stride % grid_size == grid_size - 1;
-        if (last)
-            continue;
-        const std::size_t next = cell + stride;
-        if (sector.grid.cells[cell] != sector.grid.cells[next])
-            add_step(light_at(sector, cell), light_at(sector, next), steps);
-    }
-}
-
-// The level of cells at a height; the lowest or highest where it is below or above the grid.
-std::size_t level_of(const Grid& grid, std::int64_t height_units) {
-    const std::int64_t above = height_units - grid.z_origin_units;
-    const std::int64_t level = above / std::int64_t{grid.cell_height_units};
-    return static_cast<std::size_t>(std::clamp<std::int64_t>(level, 0, grid_size - 1));
-}
-
 // How much of the sky is hidden in a horizontal direction, from the sky visibility around it.
 double hidden_sky(const std::array<float, basis_count>& sky, std::size_t axis, float sign) {
     double hidden = 0;
@@ -77,15 +43,26 @@ double hidden_sky(const std::array<float, basis_count>& sky, std::size_t axis, f
     return weights > 0 ? hidden / weights : 0;
 }
 
+// A probe that a cell names, and where it is.
+struct Named {
+    const RegionSector& sector;
+    std::uint8_t probe;
+
+    [[nodiscard]] bool is_there() const { return probe < sector.light.size(); }
+    [[nodiscard]] const Light& light() const { return sector.light[probe]; }
+    [[nodiscard]] double hidden(std::size_t axis, float sign) const {
+        return hidden_sky(sector.sky_visibility[probe], axis, sign);
+    }
+    [[nodiscard]] const std::array<std::int32_t, 3>& position() const { return sector.positions[probe]; }
+};
+
 // Of the step between two probes, what an edge between them may bring: a ridge or wall hides sky from both,
 // on the side where it stands; a cliff from the lower one, no more than its height does.
-double explained_step(
-    const RegionSector& west, std::size_t p, const RegionSector& east, std::size_t q, std::size_t axis) {
-    const double west_hidden = hidden_sky(west.sky_visibility[p], axis, 1);
-    const double east_hidden = hidden_sky(east.sky_visibility[q], axis, -1);
-    const double by_ridge = std::min(west_hidden, east_hidden);
-    const std::array<std::int32_t, 3>& a = west.positions[p];
-    const std::array<std::int32_t, 3>& b = east.positions[q];
+double explained_step(const Named& west, const Named& east, std::size_t axis) {
+    const double west_hidden = west.hidden(axis, 1);
+    const double east_hidden = east.hidden(axis, -1);
+    const std::array<std::int32_t, 3>& a = west.position();
+    const std::array<std::int32_t, 3>& b = east.position();
     const auto difference = [&](std::size_t k) {
         return static_cast<double>(a[k]) - static_cast<double>(b[k]);
     };
@@ -93,14 +70,51 @@ double explained_step(
     const double away = std::hypot(difference(0), difference(1));
     const double of_lower = a[2] < b[2] ? west_hidden : east_hidden;
     const double by_cliff = height > 0 ? std::min(of_lower, height / std::hypot(height, away)) : 0;
-    return std::max(by_ridge, by_cliff);
+    return std::max(std::min(west_hidden, east_hidden), by_cliff);
+}
+
+struct Steps {
+    Mean light;
+    Mean explained;
+
+    void add(const Named& west, const Named& east, std::size_t axis) {
+        if (!west.is_there() || !east.is_there())
+            return;
+        light.add(step_between(west.light(), east.light()));
+        explained.add(explained_step(west, east, axis));
+    }
+};
+
+// From a cell to the next one to the east (axis 0) or north (axis 1).
+std::size_t stride_of(std::size_t axis) {
+    return axis == 0 ? 1 : grid_size;
+}
+
+void add_steps_inside(const RegionSector& sector, std::size_t axis, Steps& steps) {
+    const std::size_t stride = stride_of(axis);
+    for (std::size_t cell = 0; cell < grid_cell_count; ++cell) {
+        const bool last = cell / stride % grid_size == grid_size - 1;
+        if (last)
+            continue;
+        const Named here{sector, sector.grid.cells[cell]};
+        const Named next{sector, sector.grid.cells[cell + stride]};
+        if (here.probe != next.probe)
+            steps.add(here, next, axis);
+    }
+}
+
+// The level of cells at a height; the lowest or highest where it is below or above the grid.
+std::size_t level_of(const Grid& grid, std::int64_t height_units) {
+    const std::int64_t above = height_units - grid.z_origin_units;
+    const std::int64_t level = above / std::int64_t{grid.cell_height_units};
+    return static_cast<std::size_t>(std::clamp<std::int64_t>(level, 0, grid_size - 1));
 }
 
 // From the last cells of `west` (or south) to the first of `east` (or north) at the same height.
-Mean steps_across(const RegionSector& west, const RegionSector& east, std::size_t axis) {
+Steps steps_across(const RegionSector& west, const RegionSector& east, std::size_t axis) {
     const std::size_t to_last = stride_of(axis) * (grid_size - 1);
     const std::size_t along = stride_of(1 - axis);
-    Mean steps;
+    Steps steps;
     for (std::size_t z = 0; z < grid_size; ++z) {
         const std::int64_t cell_height = west.grid.cell_height_units;
         const std::int64_t bottom = west.grid.z_origin_units + static_cast<std::int64_t>(z) * cell_height;
@@ -108,12 +122,7 @@ Mean steps_across(const RegionSector& west, const RegionSector& east, std::size_
         for (std::size_t k = 0; k < grid_size; ++k) {
             const std::size_t here = cells_of_level * z + along * k + to_last;
             const std::size_t next = cells_of_level * east_z + along * k;
-            const std::uint8_t p = west.grid.cells[here];
-            const std::uint8_t q = east.grid.cells[next];
-            if (p >= west.light.size() || q >= east.light.size())
-                continue;
-            const double step = step_between(west.light[p], east.light[q]);
-            steps.add(std::max(0.0, step - explained_step(west, p, east, q, axis)));
+            steps.add({west, west.grid.cells[here]}, {east, east.grid.cells[next]}, axis);
         }
     }
     return steps;
@@ -134,10 +143,12 @@ Light light_under_white_sky(const Probe& probe) {
 }
 
 BorderStep border_step(const RegionSector& west, const RegionSector& east, std::size_t axis) {
-    Mean inside;
+    Steps inside;
     add_steps_inside(west, axis, inside);
     add_steps_inside(east, axis, inside);
-    return {steps_across(west, east, axis).value(), inside.value(), inside.count};
+    const Steps across = steps_across(west, east, axis);
+    const double explained = std::max(0.0, across.explained.value() - inside.explained.value());
+    return {std::max(0.0, across.light.value() - explained), inside.light.value(), inside.light.count};
 }
 
 }  // namespace drtv

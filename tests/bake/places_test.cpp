@@ -175,6 +175,30 @@ TEST(Solids, ACrownOfPatchesIsOneAndACrownOfCardsIsNone) {
     }
 }
 
+// A cupboard in the corner of a room, one mesh, an edge of both at one place.
+TEST(Solids, ThatTouchARoomInAnEdgeStaySolids) {
+    Scene scene;
+    const int mesh = scene.b.add_mesh(world_box({10, 10, 0.1f}, {46, 46, 6}, true), scene.two_sided);
+    scene.b.add_primitive(mesh, world_box({10, 10, 0.1f}, {22, 22, 6}), scene.two_sided);
+    scene.b.add_node({.mesh = mesh, .name = "room and cupboard"});
+    const Places all = places(baked(scene.b));
+    EXPECT_EQ(count_in(all, {10, 10, 0}, {22, 22, 6}), 0u);
+    EXPECT_GT(count_in(all, {22, 22, 0}, {46, 46, 6}), 0u);
+}
+
+// However the frame of the room's object is turned.
+TEST(Rooms, OfAnObjectOfTheirOwnAreFreeHoweverTheyAreTurned) {
+    for (const double turn : {0.0, 0.3, 0.785}) {
+        Scene scene;
+        scene.add(world_box({20, 20, -1}, {36, 36, 6}), scene.two_sided, "house");
+        scene.b.add_node({.mesh = scene.b.add_mesh(room({-5, 0, -5}, {5, 5, 5}), scene.two_sided),
+                          .translation = glm::dvec3(28, 0.2, -28),
+                          .rotation = glm::dvec4(0, std::sin(turn / 2), 0, std::cos(turn / 2)),
+                          .name = "room"});
+        EXPECT_GT(count_in(places(baked(scene.b)), {22, 22, 0}, {34, 34, 5}), 0u) << turn;
+    }
+}
+
 // Walls of a metre: the room is a cavity of one mesh, or an object of its own.
 TEST(Rooms, WithThickWallsAreFree) {
     for (const bool one_mesh : {true, false}) {
@@ -240,6 +264,20 @@ TEST(Floors, TheLowerSideOfASlabIsNone) {
     const Places all = places(baked(scene.b));
     EXPECT_EQ(all.size(), 64u);
     EXPECT_TRUE(std::ranges::all_of(all, [](const glm::vec3& p) { return p.z == 4; }));
+}
+
+TEST(Floors, ATwoSidedSlabHasOneOnTopHoweverItIsWound) {
+    for (const bool inwards : {false, true}) {
+        Scene scene(false);
+        scene.add(world_box({-100, -100, 0}, {100, 100, 10}, inwards), scene.two_sided, "slab");
+        EXPECT_EQ(count_in(places(baked(scene.b)), {0, 0, 10}, {64, 64, 12}), 64u) << inwards;
+    }
+}
+
+TEST(Floors, InsideAClosedDomeThatLooksOutwardsAreMissedAloud) {
+    Scene scene;
+    scene.add(world_box({-300, -300, -50}, {300, 300, 200}), scene.two_sided, "dome");
+    EXPECT_TRUE(says(baked(scene.b), "most of its ground lies inside 'dome'"));
 }
 
 // A rock sunk into a hill that the sea goes on under; the hill ends in the open, so that rays escape.
@@ -407,7 +445,7 @@ TEST(Volumes, OfOverlappingPartsAreTheirUnion) {
 // Ground of 16 x 16 m, so that no limit of a sector is met.
 TEST(Distance, BelowFourMetresPlacesMoreProbes) {
     std::size_t last = 0;
-    for (const float distance_m : {6.0f, 4.0f, 3.0f, 2.0f, 1.5f, 1.0f}) {
+    for (const float distance_m : {6.0f, 4.0f, 3.2f, 2.4f, 2.0f, 1.5f, 1.2f, 1.0f}) {
         Scene scene(false);
         scene.add(in_gltf(quad({8, 8, 0}, {24, 8, 0}, {24, 24, 0}, {8, 24, 0})), scene.plain, "ground");
         const Places all = places(baked(scene.b, distance_m));

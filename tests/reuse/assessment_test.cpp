@@ -469,6 +469,17 @@ TEST(Assessment, PlacementLooksWhereNoRayGoes) {
     EXPECT_EQ(reuse::describe(assessment, changes), "floor was added: it may move probes");
 }
 
+// Less than a step of the file's vertices: the grid may have cells on either side.
+TEST(Assessment, AnInteriorMovedByAHairIsAChange) {
+    Yard yard(3, false);
+    yard.things.push_back({"inside", "interior", Yard::block_mesh, {30, 0, -30}});
+    Yard moved = yard;
+    moved.things.back().at.x += 0.0004;
+    const auto changes = reuse::changes_between(reuse::take_inventory(*open_world(yard.build())),
+                                                reuse::take_inventory(*open_world(moved.build())));
+    EXPECT_EQ(changes.size(), 1u);
+}
+
 TEST(Assessment, ToleranceLetsAFarTreeBe) {
     const Yard yard(3, false);
     Yard moved = yard;

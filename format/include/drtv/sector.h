@@ -33,7 +33,7 @@ struct Probe {
     bool operator==(const Probe&) const = default;
 };
 
-// A probe a cell, the nearest that its centre sees. Cell (x, y, z) stands at index x + 16 y + 256 z; cells
+// A probe a cell, one that it sees. Cell (x, y, z) stands at index x + 16 y + 256 z; cells
 // are 4 m wide. The reader takes any index: one that is not below the number of probes counts as `no_probe`
 // (SPEC.md, section 5.5).
 struct Grid {

@@ -82,7 +82,7 @@ ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::u
 // sector.probe_count.
 [[nodiscard]] Float3 position_m(const SectorView& sector, std::size_t p);
 
-// The probe that lights a world position, by the grid (SPEC.md, section 5.5); `no_probe` where the sector has
+// The probe that lights a world position, by the grid (SPEC.md, section 5.5); `no_probe` where the cell has
 // none: then nothing is added. What is beside, above or below the grid takes the nearest cell.
 [[nodiscard]] std::uint8_t find_probe(const SectorView& sector, const Float3& world_m);
 
