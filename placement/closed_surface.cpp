@@ -36,8 +36,7 @@ class Turning {
             return found;
         std::vector<State> states(triangles_.size(), State::unknown);
         for (std::uint32_t n = 0; n < triangles_.size(); ++n) {
-            if (parts_.part_of[n] == no_part || parts_.closed[parts_.part_of[n]] ||
-                states[n] != State::unknown)
+            if (parts_.closed[parts_.part_of[n]] || states[n] != State::unknown)
                 continue;
             if (!turn_part(n, states))
                 return tl::unexpected(std::string("is not a surface: it has no inside, like a Klein bottle"));
@@ -140,7 +139,7 @@ tl::expected<ClosedSurface, std::string> closed_surface(std::span<const glm::dve
     ClosedSurface surface;
     for (const glm::uvec3& t : triangles) {
         const glm::uvec3 corners(merged.number[t.x], merged.number[t.y], merged.number[t.z]);
-        if (corners.x != corners.y && corners.y != corners.z && corners.z != corners.x)
+        if (has_three_corners(corners))
             surface.triangles.push_back(corners);
     }
     if (surface.triangles.empty())

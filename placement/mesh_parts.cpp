@@ -1,43 +1,17 @@
 #include "placement/mesh_parts.h"
 
+#include "placement/disjoint_sets.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
 namespace drtv::placement {
-namespace {
-
-// Sets that are joined two at a time, with halving of paths (Tarjan 1975).
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t count) : parents_(count) {
-        std::iota(parents_.begin(), parents_.end(), 0u);
-    }
-
-    std::uint32_t root_of(std::uint32_t n) {
-        while (parents_[n] != n)
-            n = parents_[n] = parents_[parents_[n]];
-        return n;
-    }
-    // The smaller number stays the root.
-    void join(std::uint32_t a, std::uint32_t b) {
-        const std::uint32_t root_a = root_of(a);
-        const std::uint32_t root_b = root_of(b);
-        parents_[std::max(root_a, root_b)] = std::min(root_a, root_b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parents_;
-};
-
 bool has_three_corners(const glm::uvec3& t) {
     return t.x != t.y && t.y != t.z && t.z != t.x;
 }
-
-}  // namespace
 
 MergedVertices merge_vertices(std::span<const glm::dvec3> vertices) {
     struct Vertex {

@@ -25,6 +25,8 @@ struct HalfEdge {
     bool rising;  // from low to high
 };
 
+[[nodiscard]] bool has_three_corners(const glm::uvec3& triangle);
+
 // Of all triangles with three different corners, sorted by their vertices.
 [[nodiscard]] std::vector<HalfEdge> half_edges(std::span<const glm::uvec3> triangles);
 

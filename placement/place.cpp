@@ -93,9 +93,7 @@ class Placer {
 
     [[nodiscard]] bool near_manual(const Position& position, float distance_m) const {
         return manual_index_.any_near(position, distance_m, [&](std::size_t n) {
-            const Manual& probe = manual_[n];
-            return squared_distance(position, probe.position) < squared_units(distance_m) &&
-                   serves(probe, position) && sees(position, probe.position);
+            return is_near(position, manual_[n].position, distance_m) && serves(manual_[n], position);
         });
     }
 

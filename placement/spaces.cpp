@@ -27,6 +27,7 @@ Spaces::Spaces(const Position& corner,
             add_line(x, y, bottom_m, top_m);
     }
     closed_.resize(intervals_.size());
+    spaces_ = DisjointSets(intervals_.size());
     join_neighbours();
     for (const glm::vec3& probe : probes)
         open_at(probe);
@@ -42,7 +43,7 @@ void Spaces::add_line(std::int32_t x, std::int32_t y, float bottom_m, float top_
     std::ranges::reverse(line.hits);
     for (std::size_t below = 0; below <= line.hits.size(); ++below) {
         const auto number = static_cast<std::uint32_t>(intervals_.size());
-        Interval interval{bottom_m, top_m, false, false, false, number};
+        Interval interval{bottom_m, top_m};
         if (below > 0)
             interval.low_m = std::max(bottom_m, line.hits[below - 1].z_m);
         if (below < line.hits.size())
@@ -60,12 +61,6 @@ void Spaces::add_line(std::int32_t x, std::int32_t y, float bottom_m, float top_
         intervals_[line.intervals[below]].under_back = under_back;
         intervals_[line.intervals[below]].under_body = under_body;
     }
-}
-
-std::uint32_t Spaces::space_of(std::uint32_t interval) {
-    while (intervals_[interval].space != interval)
-        interval = intervals_[interval].space = intervals_[intervals_[interval].space].space;
-    return interval;
 }
 
 void Spaces::join_neighbours() {
@@ -103,19 +98,18 @@ void Spaces::join(std::int32_t x, std::int32_t y, std::int32_t other_x, std::int
 void Spaces::join(std::uint32_t a, const glm::vec3& in_a, std::uint32_t b, const glm::vec3& in_b) {
     const bool both = intervals_[a].under_back && intervals_[b].under_back;
     const bool one = intervals_[a].under_back || intervals_[b].under_back;
-    if (!one || space_of(a) == space_of(b))
+    if (!one || spaces_.root_of(a) == spaces_.root_of(b))
         return;
-    const std::uint32_t under = space_of(intervals_[a].under_back ? a : b);
+    const std::uint32_t under = spaces_.root_of(intervals_[a].under_back ? a : b);
     if ((!both && intervals_[under].open) || surroundings_.separated(in_a, in_b))
         return;
     if (!both) {
         intervals_[under].open = true;
         return;
     }
-    const std::uint32_t first = std::min(space_of(a), space_of(b));
-    const std::uint32_t second = std::max(space_of(a), space_of(b));
-    intervals_[second].space = first;
-    intervals_[first].open = intervals_[first].open || intervals_[second].open;
+    const bool open = intervals_[spaces_.root_of(a)].open || intervals_[spaces_.root_of(b)].open;
+    spaces_.join(a, b);
+    intervals_[spaces_.root_of(a)].open = open;
 }
 
 // Whatever of the four lines around a place it sees at its height.
@@ -132,7 +126,7 @@ void Spaces::open_at(const glm::vec3& place) {
             const std::uint32_t interval = line(x, y).intervals[surfaces_below(line(x, y), place.z)];
             if (intervals_[interval].under_back &&
                 !surroundings_.separated(place, glm::vec3(line_at(x, y), place.z)))
-                intervals_[space_of(interval)].open = true;
+                intervals_[spaces_.root_of(interval)].open = true;
         }
     }
 }
@@ -162,7 +156,7 @@ bool Spaces::is_in_solid(const Line& line, const glm::vec2& at, std::size_t belo
         closed =
             intervals_[interval].under_body && surroundings_.closed_around(glm::vec3(at, z_m)).has_value();
     }
-    return *closed || (intervals_[interval].under_back && !intervals_[space_of(interval)].open);
+    return *closed || (intervals_[interval].under_back && !intervals_[spaces_.root_of(interval)].open);
 }
 
 }  // namespace drtv::placement

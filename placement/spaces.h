@@ -2,6 +2,7 @@
 // solid, or lie under the ground and are sealed. From a sealed space nothing of the sector is seen.
 #pragma once
 
+#include "placement/disjoint_sets.h"
 #include "placement/placement.h"
 
 #include <glm/vec2.hpp>
@@ -34,11 +35,10 @@ class Spaces {
   private:
     // Part of a line between two surfaces: all of it is in one space.
     struct Interval {
-        float low_m, high_m;      // within the heights that matter
-        bool under_back = false;  // the next surface above it that is of no body is seen from its back
-        bool under_body = false;  // some body is above
-        bool open = false;        // of a space: it leads to others that are under none, or holds a probe
-        std::uint32_t space = 0;  // the first interval that is known to be of the same space
+        float low_m = 0, high_m = 0;  // within the heights that matter
+        bool under_back = false;      // the next surface above it that is of no body is seen from its back
+        bool under_body = false;      // some body is above
+        bool open = false;            // of a space: it leads to others that are under none, or holds a probe
     };
     struct Line {
         std::vector<ColumnHit> hits;           // from the bottom up
@@ -50,7 +50,6 @@ class Spaces {
     void join(std::int32_t x, std::int32_t y, std::int32_t other_x, std::int32_t other_y);
     // By a straight way between the two places.
     void join(std::uint32_t a, const glm::vec3& in_a, std::uint32_t b, const glm::vec3& in_b);
-    [[nodiscard]] std::uint32_t space_of(std::uint32_t interval);
     [[nodiscard]] static std::size_t surfaces_below(const Line& line, float z_m);
     [[nodiscard]] bool is_in_solid(const Line& line, const glm::vec2& at, std::size_t below, float z_m);
     void open_at(const glm::vec3& place);
@@ -62,6 +61,7 @@ class Spaces {
     const Surroundings& surroundings_;
     std::vector<Line> lines_;  // by row
     std::vector<Interval> intervals_;
+    DisjointSets spaces_;                      // of intervals; what is said of a space stands at its first
     std::vector<std::optional<bool>> closed_;  // by interval: inside closed surfaces
 };
 

@@ -67,13 +67,14 @@ float most_distance_m(const PlacementTags& tags, const Settings& settings) {
     return most_m;
 }
 
-}  // namespace
-
+// How far around a sector placement looks down its columns.
 float placement_margin_m(const PlacementTags& tags, const Settings& settings) {
     const float margin_m = placement::decision_margin_m({settings.min_distance_m}, tags.spacings);
     // The neighbours' probes are sources of local transfer.
     return settings.local_transfer ? margin_m + static_cast<float>(map::sector_size_m) : margin_m;
 }
+
+}  // namespace
 
 float placement_reach_m(const PlacementTags& tags, const Settings& settings) {
     // As far as candidates stand, may be moved, and look for others at their distance.

@@ -34,9 +34,6 @@ struct PlacementTags {
     std::vector<placement::SpacingVolume> spacings;
 };
 
-// How far around a sector placement looks down its columns.
-[[nodiscard]] float placement_margin_m(const PlacementTags& tags, const Settings& settings);
-
 // How far around a sector something that changes may move its probes.
 [[nodiscard]] float placement_reach_m(const PlacementTags& tags, const Settings& settings);
 
