@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <tuple>
+#include <utility>
 
 namespace drtv::bake {
 namespace {
@@ -37,19 +37,53 @@ float largest(const LocalCoefficients& coefficients) {
     return most;
 }
 
-// The sources of one receiver, ascending.
-std::vector<std::size_t> chosen_sources(const LocalSources& sources, std::size_t receiver, float reach_m) {
-    std::vector<std::pair<std::int64_t, std::size_t>> by_distance;
-    for (std::size_t s = 0; s < sources.positions.size(); ++s) {
-        const std::int64_t square = square_distance(sources.positions[receiver], sources.positions[s]);
-        if (square <= square_units(reach_m))
-            by_distance.emplace_back(square, s);
+// A probe that may be a source.
+struct Candidate {
+    std::int32_t dj;
+    std::int32_t di;
+    std::uint32_t probe;
+    placement::Position position;
+};
+
+// All of the sector, then those of its neighbours by j, i and index.
+std::vector<Candidate> candidates_around(const PlacedSector& placed,
+                                         std::span<const PlacedSector* const> neighbours) {
+    std::vector<Candidate> candidates;
+    const auto add_all = [&](const PlacedSector& sector) {
+        const std::int32_t dj = sector.sector.j - placed.sector.j;
+        const std::int32_t di = sector.sector.i - placed.sector.i;
+        for (std::uint32_t p = 0; p < sector.positions.size(); ++p)
+            candidates.push_back({dj, di, p, sector.positions[p]});
+    };
+    add_all(placed);
+    for (const PlacedSector* neighbour : neighbours)
+        add_all(*neighbour);
+    const auto first_of_neighbours =
+        candidates.begin() + static_cast<std::ptrdiff_t>(placed.positions.size());
+    std::sort(first_of_neighbours, candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return std::tie(a.dj, a.di, a.probe) < std::tie(b.dj, b.di, b.probe);
+    });
+    return candidates;
+}
+
+// The candidates that are nearest to a receiver, ascending.
+std::vector<std::uint32_t> nearest(const placement::Position& receiver,
+                                   std::span<const Candidate> candidates,
+                                   float reach_m) {
+    const auto order = [&](std::uint32_t n) {
+        const Candidate& c = candidates[n];
+        return std::tuple(square_distance(receiver, c.position), c.dj, c.di, c.probe);
+    };
+    std::vector<std::uint32_t> chosen;
+    for (std::uint32_t n = 0; n < candidates.size(); ++n) {
+        if (square_distance(receiver, candidates[n].position) <= square_units(reach_m))
+            chosen.push_back(n);
     }
-    std::ranges::sort(by_distance);
-    by_distance.resize(std::min(by_distance.size(), max_local_sources));
-    std::vector<std::size_t> chosen;
-    for (const auto& [square, s] : by_distance)
-        chosen.push_back(s);
+    if (chosen.size() > max_local_sources) {
+        const auto end = chosen.begin() + max_local_sources;
+        std::ranges::nth_element(chosen, end, {}, order);
+        chosen.erase(end, chosen.end());
+    }
     std::ranges::sort(chosen);
     return chosen;
 }
@@ -91,44 +125,29 @@ int exponent_of(float value, int least) {
 LocalSources local_sources(const PlacedSector& placed,
                            std::span<const PlacedSector* const> neighbours,
                            float reach_m) {
+    const std::vector<Candidate> candidates = candidates_around(placed, neighbours);
     LocalSources sources;
-    for (std::size_t p = 0; p < placed.positions.size(); ++p) {
-        sources.sources.push_back({0, 0, static_cast<std::uint8_t>(p), 0});
-        sources.positions.push_back(placed.positions[p]);
+    std::vector<bool> used(candidates.size());
+    for (const placement::Position& receiver : placed.positions) {
+        sources.of_receivers.push_back(nearest(receiver, candidates, reach_m));
+        for (const std::uint32_t n : sources.of_receivers.back())
+            used[n] = true;
     }
-    if (placed.positions.empty())
-        return sources;
-    struct Candidate {
-        std::int64_t square;
-        std::int32_t dj;
-        std::int32_t di;
-        std::uint32_t probe;
-        placement::Position position;
-    };
-    std::vector<Candidate> candidates;
-    for (const PlacedSector* neighbour : neighbours) {
-        for (std::uint32_t p = 0; p < neighbour->positions.size(); ++p) {
-            std::int64_t square = std::numeric_limits<std::int64_t>::max();
-            for (const placement::Position& own : placed.positions)
-                square = std::min(square, square_distance(own, neighbour->positions[p]));
-            if (square <= square_units(reach_m))
-                candidates.push_back({square,
-                                      neighbour->sector.j - placed.sector.j,
-                                      neighbour->sector.i - placed.sector.i,
-                                      p,
-                                      neighbour->positions[p]});
-        }
-    }
-    std::ranges::sort(
-        candidates, {}, [](const Candidate& c) { return std::tuple(c.square, c.dj, c.di, c.probe); });
-    for (const Candidate& c : candidates) {
-        if (sources.sources.size() >= max_local_sources)
-            break;
+    std::vector<std::uint32_t> index_of(candidates.size());
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        if (!used[n])
+            continue;
+        const Candidate& c = candidates[n];
+        index_of[n] = static_cast<std::uint32_t>(sources.sources.size());
         sources.sources.push_back({static_cast<std::int8_t>(c.di),
                                    static_cast<std::int8_t>(c.dj),
                                    static_cast<std::uint8_t>(c.probe),
                                    0});
         sources.positions.push_back(c.position);
+    }
+    for (std::vector<std::uint32_t>& of_receiver : sources.of_receivers) {
+        for (std::uint32_t& source : of_receiver)
+            source = index_of[source];
     }
     return sources;
 }
@@ -136,34 +155,36 @@ LocalSources local_sources(const PlacedSector& placed,
 // A scale of a source and a receiver together: a source's is what its brightest receiver needs, a receiver's
 // what its own strongest pair then still leaves unused. Each pair keeps at least the digits that either alone
 // would give it.
-LocalTransfer encode_local(const LocalSources& sources,
-                           const LocalLight& light,
-                           std::size_t receiver_count,
-                           float reach_m) {
+LocalTransfer encode_local(const LocalSources& sources, const LocalLight& light) {
+    const std::size_t receiver_count = sources.of_receivers.size();
     LocalTransfer transfer;
     transfer.sources = sources.sources;
-    std::vector<std::vector<std::size_t>> chosen;
     std::vector<float> brightest(sources.sources.size(), 0);
     for (std::size_t p = 0; p < receiver_count; ++p) {
-        chosen.push_back(chosen_sources(sources, p, reach_m));
-        for (const std::size_t s : chosen.back())
-            brightest[s] = std::max(brightest[s], largest(light.at(p, s)));
+        const std::vector<std::uint32_t>& of_receiver = sources.of_receivers[p];
+        for (std::size_t n = 0; n < of_receiver.size(); ++n)
+            brightest[of_receiver[n]] = std::max(brightest[of_receiver[n]], largest(light.pairs[p][n]));
     }
     for (std::size_t s = 0; s < brightest.size(); ++s)
         transfer.sources[s].exponent = static_cast<std::int8_t>(exponent_of(brightest[s], least_exponent));
     for (std::size_t p = 0; p < receiver_count; ++p) {
+        const std::vector<std::uint32_t>& of_receiver = sources.of_receivers[p];
         LocalReceiver receiver;
+        receiver.sources.resize(local_mask_bytes(sources.sources.size()));
         receiver.first_pair = static_cast<std::uint32_t>(transfer.pairs.size());
         float most = 0;
-        for (const std::size_t s : chosen[p])
-            most = std::max(most, largest(light.at(p, s)) / scale_of_exponent(transfer.sources[s].exponent));
+        for (std::size_t n = 0; n < of_receiver.size(); ++n) {
+            const float scale = scale_of_exponent(transfer.sources[of_receiver[n]].exponent);
+            most = std::max(most, largest(light.pairs[p][n]) / scale);
+        }
         receiver.exponent = static_cast<std::int8_t>(exponent_of(most, least_exponent));
-        for (const std::size_t s : chosen[p]) {
+        for (std::size_t n = 0; n < of_receiver.size(); ++n) {
+            const std::uint32_t s = of_receiver[n];
             const float scale = scale_of_exponent(receiver.exponent + transfer.sources[s].exponent);
             LightCodes codes{};
             for (std::size_t c = 0; c < channel_count; ++c) {
                 for (std::size_t i = 0; i < sh_count; ++i)
-                    codes[c][i] = encode_fixed(light.at(p, s)[c][i], scale);
+                    codes[c][i] = encode_fixed(light.pairs[p][n][c][i], scale);
             }
             round_codes(codes);
             if (codes == LightCodes{})
@@ -171,7 +192,7 @@ LocalTransfer encode_local(const LocalSources& sources,
             receiver.sources[s >> 3] = static_cast<std::uint8_t>(receiver.sources[s >> 3] | 1u << (s & 7));
             transfer.pairs.push_back(codes);
         }
-        transfer.receivers.push_back(receiver);
+        transfer.receivers.push_back(std::move(receiver));
     }
     return transfer;
 }

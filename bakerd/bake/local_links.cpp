@@ -71,8 +71,8 @@ float join(const EndGroup& group, const GroupPaths& paths, const glm::vec3& othe
 
 void add_links(
     const EndGroup& group, const Links& links, bool wants_here, bool wants_there, Brought& brought) {
-    LocalCoefficients& here = brought.here[links.source];
-    LocalCoefficients& there = brought.there[links.source];
+    LocalCoefficients& here = brought.here[links.partner];
+    LocalCoefficients& there = brought.there[links.partner];
     for (std::size_t k = 0; k < group.ends.size(); ++k) {
         if (!(links.strength[k] > 0))
             continue;

@@ -60,8 +60,8 @@ struct EndGroup {
 
 // What the ends of a group do for one pair.
 struct Links {
-    std::size_t source = 0;                     // the other source, q
-    alignas(32) EndGroup::Numbers strength;     // what each brings, for the draw; 0: nothing
+    std::size_t partner = 0;                 // the number of the other source, q, among the paths' partners
+    alignas(32) EndGroup::Numbers strength;  // what each brings, for the draw; 0: nothing
     alignas(32) EndGroup::Numbers here, there;  // to receivers here and there, but for colour and direction
     alignas(32) EndGroup::Numbers way_x, way_y, way_z;  // from q, unit
     alignas(32) EndGroup::Numbers facing;  // negative where q is on the other side of the surface
@@ -80,7 +80,7 @@ struct GroupPaths {
 [[nodiscard]] float join(
     const EndGroup& group, const GroupPaths& paths, const glm::vec3& other, bool own, Links& links);
 
-// What the paths of one source brought, by the other source of the pair.
+// What the paths of one source brought, by partner: the other source of a pair.
 struct Brought {
     std::vector<LocalCoefficients> here;   // to a receiver where the paths began, from a light at the other
     std::vector<LocalCoefficients> there;  // to a receiver at the other, from a light where the paths began

@@ -26,18 +26,55 @@
 namespace drtv::bake {
 namespace {
 
+// Another source that a source has a pair with, in one direction or both.
+struct Partner {
+    std::uint32_t source;
+    bool wants_here = false;   // light from it is wanted
+    bool wants_there = false;  // light is wanted there
+};
+using Partners = std::vector<Partner>;  // by source
+
+// Of each of so many sources.
+std::vector<Partners> partners_of(const SourcesOfReceivers& wanted, std::size_t source_count) {
+    std::vector<Partners> all(source_count);
+    for (std::uint32_t p = 0; p < wanted.size(); ++p) {
+        for (const std::uint32_t q : wanted[p]) {
+            all[p].push_back({q, true, false});
+            all[q].push_back({p, false, true});
+        }
+    }
+    for (Partners& partners : all) {
+        std::ranges::stable_sort(partners, {}, &Partner::source);
+        Partners merged;
+        for (const Partner& partner : partners) {
+            if (merged.empty() || merged.back().source != partner.source)
+                merged.push_back({partner.source, false, false});
+            merged.back().wants_here |= partner.wants_here;
+            merged.back().wants_there |= partner.wants_there;
+        }
+        partners = std::move(merged);
+    }
+    return all;
+}
+
+std::size_t number_of(std::uint32_t source, const Partners& partners) {
+    const auto found = std::ranges::lower_bound(partners, source, {}, &Partner::source);
+    return static_cast<std::size_t>(found - partners.begin());
+}
+
 class LocalIntegrator {
   public:
     LocalIntegrator(const trace::Scene& scene,
                     std::span<const glm::ivec3> sources,
-                    std::size_t receiver_count,
+                    const SourcesOfReceivers& wanted,
                     const SampleTable& samples,
                     const LocalSettings& settings,
                     const WatchOfThread& watch)
         : scene_(scene),
           settings_(settings),
           source_units_(sources),
-          receiver_count_(receiver_count),
+          wanted_(wanted),
+          partners_(partners_of(wanted, sources.size())),
           samples_(samples),
           watch_(watch) {
         for (const glm::ivec3& units : sources) {
@@ -53,13 +90,12 @@ class LocalIntegrator {
             brought[p] = bring(p);
         });
         LocalLight light;
-        light.source_count = positions_.size();
-        light.pairs.resize(receiver_count_ * positions_.size());
-        for (std::size_t p = 0; p < receiver_count_; ++p) {
-            for (std::size_t q = 0; q < positions_.size(); ++q) {
-                const LocalCoefficients& here = brought[p].here[q];
-                const LocalCoefficients& there = brought[q].there[p];
-                LocalCoefficients& pair = light.pairs[p * positions_.size() + q];
+        light.pairs.resize(wanted_.size());
+        for (std::uint32_t p = 0; p < wanted_.size(); ++p) {
+            for (const std::uint32_t q : wanted_[p]) {
+                const LocalCoefficients& here = brought[p].here[number_of(q, partners_[p])];
+                const LocalCoefficients& there = brought[q].there[number_of(p, partners_[q])];
+                LocalCoefficients& pair = light.pairs[p].emplace_back();
                 for (std::size_t c = 0; c < channel_count; ++c) {
                     // A source's own pair has one kind of path only.
                     for (std::size_t i = 0; i < sh_count; ++i)
@@ -88,8 +124,8 @@ class LocalIntegrator {
     Brought bring(std::size_t p) const {
         Work work;
         work.source = p;
-        work.brought.here.resize(positions_.size());
-        work.brought.there.resize(positions_.size());
+        work.brought.here.resize(partners_[p].size());
+        work.brought.there.resize(partners_[p].size());
         if (watch_) {
             work.watch = &watch_();
             work.watch->begin_probe(source_units_[p]);
@@ -109,17 +145,16 @@ class LocalIntegrator {
         return std::move(work.brought);
     }
 
-    // One group of ends, and all other sources that it may serve.
+    // One group of ends, and all partners that it may serve.
     void join_all(const EndGroup& group, bool first_bounce, std::uint32_t number, Work& work) const {
         const std::size_t p = work.source;
         const GroupPaths paths{samples_.count(), settings_.reach_m};
-        work.joined.resize(positions_.size());
+        work.joined.resize(partners_[p].size());
         work.shadows.clear();
-        for (std::size_t q = 0; q < positions_.size(); ++q) {
-            if (p >= receiver_count_ && q >= receiver_count_)
-                break;  // pairs of two neighbours' probes are another sector's
+        for (std::size_t n = 0; n < partners_[p].size(); ++n) {
+            const std::size_t q = partners_[p][n].source;
             Links& links = work.joined[work.shadows.size()];
-            links.source = q;
+            links.partner = n;
             const float total = join(group, paths, positions_[q], p == q, links);
             if (!(total > 0))
                 continue;
@@ -128,7 +163,7 @@ class LocalIntegrator {
             if (links.turns_back)
                 add(group, links, work);
             else
-                work.shadows.push_back(shadow_ray(p, group, links, total, number));
+                work.shadows.push_back(shadow_ray(p, q, group, links, total, number));
         }
         work.brought.rays += work.shadows.size();
         watch_shadows(work);
@@ -142,7 +177,8 @@ class LocalIntegrator {
     }
 
     void add(const EndGroup& group, const Links& links, Work& work) const {
-        add_links(group, links, work.source < receiver_count_, links.source < receiver_count_, work.brought);
+        const Partner& partner = partners_[work.source][links.partner];
+        add_links(group, links, partner.wants_here, partner.wants_there, work.brought);
     }
 
     static void watch_shadows(Work& work) {
@@ -155,9 +191,13 @@ class LocalIntegrator {
     }
 
     // From the end that answers for the group to the other source.
-    [[nodiscard]] trace::Ray shadow_ray(
-        std::size_t p, const EndGroup& group, const Links& links, float total, std::uint32_t number) const {
-        const std::uint32_t word = hashed(shifts_[p][0], number, shifts_[links.source][0]);
+    [[nodiscard]] trace::Ray shadow_ray(std::size_t p,
+                                        std::size_t q,
+                                        const EndGroup& group,
+                                        const Links& links,
+                                        float total,
+                                        std::uint32_t number) const {
+        const std::uint32_t word = hashed(shifts_[p][0], number, shifts_[q][0]);
         float left = rounded_unit_float(word) * total;
         std::size_t drawn = 0;
         for (std::size_t k = 0; k < group.ends.size(); ++k) {
@@ -170,7 +210,7 @@ class LocalIntegrator {
         }
         const PathEnd& end = group.ends[drawn];
         const glm::vec3& start = links.facing[drawn] < 0 ? *end.beyond : end.before;
-        const glm::vec3 way = positions_[links.source] - start;
+        const glm::vec3 way = positions_[q] - start;
         const float distance_m = glm::length(way);
         return {start, way / distance_m, distance_m};
     }
@@ -178,7 +218,8 @@ class LocalIntegrator {
     const trace::Scene& scene_;
     const LocalSettings& settings_;
     const std::span<const glm::ivec3> source_units_;
-    const std::size_t receiver_count_;
+    const SourcesOfReceivers& wanted_;
+    const std::vector<Partners> partners_;  // by source
     const SampleTable& samples_;
     const WatchOfThread& watch_;
     std::vector<glm::vec3> positions_;  // of the sources, receivers first
@@ -193,11 +234,11 @@ std::uint32_t local_sample_dimensions(std::uint32_t bounces) {
 
 LocalLight integrate_local(const trace::Scene& scene,
                            std::span<const glm::ivec3> sources,
-                           std::size_t receiver_count,
+                           const SourcesOfReceivers& wanted,
                            const SampleTable& samples,
                            const LocalSettings& settings,
                            const WatchOfThread& watch) {
-    return LocalIntegrator(scene, sources, receiver_count, samples, settings, watch).run();
+    return LocalIntegrator(scene, sources, wanted, samples, settings, watch).run();
 }
 
 }  // namespace drtv::bake

@@ -27,26 +27,24 @@ struct LocalSettings {
 // SH coefficients [channel][i] of E/pi as a function of the normal, for a light of 1 W/sr.
 using LocalCoefficients = std::array<std::array<float, sh_count>, channel_count>;
 
-struct LocalLight {
-    std::size_t source_count = 0;
-    std::vector<LocalCoefficients> pairs;  // [receiver * source_count + source]
-    std::uint64_t rays = 0;                // of paths and shadows
+// Of each receiver: the indices of the sources that it takes light from, ascending.
+using SourcesOfReceivers = std::vector<std::vector<std::uint32_t>>;
 
-    [[nodiscard]] const LocalCoefficients& at(std::size_t receiver, std::size_t source) const {
-        return pairs[receiver * source_count + source];
-    }
+struct LocalLight {
+    std::vector<std::vector<LocalCoefficients>> pairs;  // [receiver][n], n of its n-th source
+    std::uint64_t rays = 0;                             // of paths and shadows
 };
 
 // Numbers per path that `samples` should have.
 [[nodiscard]] std::uint32_t local_sample_dimensions(std::uint32_t bounces);
 
-// Positions in units of 2^-10 m; samples.count() paths are traced from each. The first `receiver_count`
-// sources are the receivers. A pure function of the triangles within reach of them and of the arguments. Runs
-// on the calling thread's TBB arena; the same numbers on any threads. Every segment is told of with the whole
-// range as its shares.
+// Positions in units of 2^-10 m; samples.count() paths are traced from each. The first sources are the
+// receivers, as many as `wanted` has. A pure function of the triangles within reach of them and of the
+// arguments. Runs on the calling thread's TBB arena; the same numbers on any threads. Every segment is told
+// of with the whole range as its shares.
 [[nodiscard]] LocalLight integrate_local(const trace::Scene& scene,
                                          std::span<const glm::ivec3> sources,
-                                         std::size_t receiver_count,
+                                         const SourcesOfReceivers& wanted,
                                          const SampleTable& samples,
                                          const LocalSettings& settings,
                                          const WatchOfThread& watch = {});

@@ -157,14 +157,13 @@ class SectorBake {
                 baked_.solid_tests.end(), neighbour.solid_tests.begin(), neighbour.solid_tests.end());
         }
         const LocalSources sources = local_sources(placed, placed_around, settings_.reach_m);
-        const std::size_t receiver_count = placed.positions.size();
         const auto samples =
             world_.samples(settings_.local_rays, local_sample_dimensions(settings_.local_bounces));
         const LocalSettings how{settings_.local_bounces, settings_.reach_m};
         const LocalLight light =
-            integrate_local(*around_.scene, sources.positions, receiver_count, *samples, how, watch_);
+            integrate_local(*around_.scene, sources.positions, sources.of_receivers, *samples, how, watch_);
         Sector& sector = baked_.sector;
-        sector.local_transfer = encode_local(sources, light, receiver_count, settings_.reach_m);
+        sector.local_transfer = encode_local(sources, light);
         sector.convergence->local_bounces = settings_.local_bounces;
         sector.convergence->local_rays = settings_.local_rays;
         sector.convergence->local_transfer_rays = light.rays;

@@ -5,7 +5,7 @@
 namespace drtv {
 namespace {
 
-constexpr std::array<const Issue*, 40> issues = {
+constexpr std::array<const Issue*, 41> issues = {
     &issue::not_a_sector_file,
     &issue::unsupported_version,
     &issue::truncated,
@@ -39,6 +39,7 @@ constexpr std::array<const Issue*, 40> issues = {
     &issue::duplicate_position,
     &issue::local_source_count,
     &issue::local_source_duplicate,
+    &issue::light_group_name,
     &issue::neighbour_source,
     &issue::neighbour_sections,
     &issue::neighbour_step,

@@ -1,6 +1,8 @@
 // Offsets and sizes of format version 1, as SPEC.md tabulates them.
 #pragma once
 
+#include <drtv/sector.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -14,6 +16,9 @@ inline constexpr std::uint16_t minor_with_light_sections = 1;
 // Likewise of a file with interiors, or with local transfer of version 2 (filtered).
 inline constexpr std::uint16_t minor_with_interiors = 2;
 inline constexpr std::uint16_t filtered_local_version = 2;
+// Likewise of a file with light groups or quality, or with local transfer of version 3 (of many sources).
+inline constexpr std::uint16_t minor_with_light_groups = 3;
+inline constexpr std::uint16_t many_sources_local_version = 3;
 
 inline constexpr std::size_t header_bytes = 64;
 inline constexpr std::size_t entry_bytes = 32;
@@ -79,9 +84,9 @@ struct LocalTransferLayout {
     static constexpr std::size_t source_bytes = 4;
     static constexpr std::size_t receiver_bytes = 8;
 
-    // A row of the matrix receiver x source, a bit a source.
-    [[nodiscard]] static constexpr std::size_t mask_bytes(std::size_t sources) {
-        return sources <= 128 ? 16 : 32;
+    // Of a section of that version.
+    [[nodiscard]] static constexpr std::size_t max_sources(std::uint16_t section_version) {
+        return section_version == many_sources_local_version ? max_sector_sources : max_probes;
     }
 
     std::size_t sources_end;
@@ -96,7 +101,7 @@ struct LocalTransferLayout {
           receivers(align(sources_end)),
           receivers_end(receivers + probe_count * receiver_bytes),
           masks(align(receivers_end)),
-          codes(masks + probe_count * mask_bytes(sources)),
+          codes(masks + probe_count * local_mask_bytes(sources)),
           end(codes + pairs * light_codes_bytes) {}
 
     // Behind the codes of a filtered section: 26 bytes a pair, not 24.
@@ -154,6 +159,71 @@ struct InteriorsLayout {
     }
     [[nodiscard]] constexpr std::size_t triangle_at(std::size_t n) const {
         return triangles + n * triangle_bytes;
+    }
+};
+
+// Light groups: header, names, all groups' codes, all groups' exponents.
+struct LightGroupsLayout {
+    static constexpr std::size_t group_count = 0;
+    static constexpr std::size_t reserved = 2;
+    static constexpr std::size_t header_bytes = 16;
+    static constexpr std::size_t name_bytes = max_light_group_name + 1;
+
+    std::size_t probes;
+    std::size_t codes;
+    std::size_t exponents;
+    std::size_t end;
+
+    constexpr LightGroupsLayout(std::size_t probe_count, std::size_t groups)
+        : probes(probe_count),
+          codes(header_bytes + groups * name_bytes),
+          exponents(codes + groups * probe_count * light_codes_bytes),
+          end(exponents + groups * probe_count) {}
+
+    [[nodiscard]] static constexpr std::size_t name_at(std::size_t g) {
+        return header_bytes + g * name_bytes;
+    }
+    [[nodiscard]] constexpr std::size_t codes_at(std::size_t g, std::size_t p) const {
+        return codes + (g * probes + p) * light_codes_bytes;
+    }
+    [[nodiscard]] constexpr std::size_t exponent_at(std::size_t g, std::size_t p) const {
+        return exponents + g * probes + p;
+    }
+};
+
+// Quality: header, one entry a probe, all groups' errors.
+struct QualityLayout {
+    static constexpr std::size_t buried_cells = 0;
+    static constexpr std::size_t blind_cells = 4;
+    static constexpr std::size_t group_count = 8;
+    static constexpr std::size_t reserved = 10;
+    static constexpr std::size_t header_bytes = 16;
+    static constexpr std::size_t probe_bytes = 24;
+    static constexpr std::size_t error_bytes = 4;
+    // Within a probe's entry; three errors stand at its start.
+    static constexpr std::size_t error_count = 3;
+    static constexpr std::size_t paths = 12;
+    static constexpr std::size_t back_hits = 16;
+    static constexpr std::size_t flags = 20;
+    static constexpr std::size_t probe_reserved = 21;
+    static constexpr std::uint8_t budget_ended_bit = 1;
+    static constexpr std::uint8_t dark_bit = 2;
+    static constexpr std::uint8_t moved_bit = 4;
+
+    std::size_t probes;
+    std::size_t group_errors;
+    std::size_t end;
+
+    constexpr QualityLayout(std::size_t probe_count, std::size_t groups)
+        : probes(probe_count),
+          group_errors(header_bytes + probe_count * probe_bytes),
+          end(group_errors + groups * probe_count * error_bytes) {}
+
+    [[nodiscard]] static constexpr std::size_t probe_at(std::size_t p) {
+        return header_bytes + p * probe_bytes;
+    }
+    [[nodiscard]] constexpr std::size_t group_error_at(std::size_t g, std::size_t p) const {
+        return group_errors + (g * probes + p) * error_bytes;
     }
 };
 

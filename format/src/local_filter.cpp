@@ -202,12 +202,13 @@ std::vector<std::uint8_t> filter_local(ByteSpan raw, std::size_t probe_count) {
 
 bool unfilter_local(ByteSpan filtered,
                     std::size_t probe_count,
+                    std::size_t max_sources,
                     std::size_t raw_bytes,
                     std::vector<std::uint8_t>& raw) {
     if (filtered.size() < Local::header_bytes)
         return false;
     const auto [sources, pairs] = load_local_transfer_counts(filtered);
-    if (sources > max_probes || pairs > probe_count * sources)
+    if (sources > max_sources || pairs > probe_count * sources)
         return false;
     const Local parts(probe_count, sources, pairs);
     if (parts.filtered_end(pairs) != filtered.size() || parts.end != raw_bytes)

@@ -17,6 +17,7 @@ namespace drtv {
 // right size give some section; what is wrong with that one shows later.
 [[nodiscard]] bool unfilter_local(std::span<const std::uint8_t> filtered,
                                   std::size_t probe_count,
+                                  std::size_t max_sources,
                                   std::size_t raw_bytes,
                                   std::vector<std::uint8_t>& raw);
 

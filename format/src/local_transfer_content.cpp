@@ -32,7 +32,7 @@ Content content_of(const Section& section, std::size_t probes) {
             probes,
             counts.sources,
             counts.pairs,
-            Local::mask_bytes(counts.sources),
+            local_mask_bytes(counts.sources),
             counts.parts(probes)};
 }
 
@@ -46,12 +46,14 @@ ReadStatus check_padding(const Content& content, std::size_t start, std::size_t 
 // Afterwards all parts of the section lie inside it.
 ReadStatus check_header(const Content& content) {
     const auto& [section, raw, probes, sources, pairs, mask_bytes, parts] = content;
-    if (sources > max_probes) {
+    const std::size_t max_sources = Local::max_sources(section.version);
+    if (sources > max_sources) {
         return refuse(section,
                       Local::source_count,
                       "local transfer section: ",
                       sources,
-                      " sources are over the limit of 255");
+                      " sources are over the limit of ",
+                      max_sources);
     }
     const auto said_mask_bytes = load_u16(raw, Local::mask_size);
     if (said_mask_bytes != mask_bytes) {

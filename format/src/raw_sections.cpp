@@ -1,3 +1,4 @@
+// Long because it has a function or two for each kind of section.
 #include "raw_sections.h"
 
 #include "bytes.h"
@@ -90,14 +91,20 @@ void append_receiver(ByteVector& bytes, const LocalReceiver& receiver) {
     append_zeros(bytes, 3);
 }
 
+// With zeros behind them, `size` bytes in all.
+void append_padded(ByteVector& bytes, const auto& content, std::size_t size) {
+    for (const auto byte : content)
+        bytes.push_back(static_cast<std::uint8_t>(byte));
+    append_zeros(bytes, size - content.size());
+}
+
 ByteVector local_transfer_section(const LocalTransfer& local) {
     const LocalTransferCounts counts{local.sources.size(), local.pairs.size()};
     const layout::LocalTransferLayout parts = counts.parts(local.receivers.size());
-    const std::size_t mask_bytes = layout::LocalTransferLayout::mask_bytes(counts.sources);
     ByteVector bytes;
     bytes.reserve(parts.end);
     append_u16(bytes, counts.sources);
-    append_u16(bytes, mask_bytes);
+    append_u16(bytes, local_mask_bytes(counts.sources));
     append_u32(bytes, counts.pairs);
     append_zeros(bytes, 8);
     for (const LocalSource& source : local.sources)
@@ -107,7 +114,7 @@ ByteVector local_transfer_section(const LocalTransfer& local) {
         append_receiver(bytes, receiver);
     bytes.resize(parts.masks, 0);
     for (const LocalReceiver& receiver : local.receivers)
-        append_bytes(bytes, ByteSpan(receiver.sources).first(mask_bytes));
+        append_padded(bytes, receiver.sources, local_mask_bytes(counts.sources));
     for (const LightCodes& pair : local.pairs)
         append_codes(bytes, pair);
     return bytes;
@@ -182,6 +189,60 @@ ByteVector interiors_section(const std::vector<Interior>& interiors) {
     return bytes;
 }
 
+ByteVector light_groups_section(const std::vector<LightGroup>& groups) {
+    using Groups = layout::LightGroupsLayout;
+    ByteVector bytes;
+    append_u16(bytes, groups.size());
+    append_zeros(bytes, Groups::header_bytes - Groups::reserved);
+    for (const LightGroup& group : groups) {
+        append_padded(bytes, group.name, Groups::name_bytes);
+    }
+    for (const LightGroup& group : groups) {
+        for (const StaticIrradiance& probe : group.irradiance)
+            append_codes(bytes, probe.codes);
+    }
+    for (const LightGroup& group : groups) {
+        for (const StaticIrradiance& probe : group.irradiance)
+            append_le(bytes, probe.exponent);
+    }
+    return bytes;
+}
+
+std::uint8_t flags_of(const ProbeQuality& probe) {
+    using Layout = layout::QualityLayout;
+    unsigned flags = 0;
+    if (probe.budget_ended)
+        flags |= Layout::budget_ended_bit;
+    if (probe.dark)
+        flags |= Layout::dark_bit;
+    if (probe.moved)
+        flags |= Layout::moved_bit;
+    return static_cast<std::uint8_t>(flags);
+}
+
+ByteVector quality_section(const Quality& quality) {
+    using Layout = layout::QualityLayout;
+    ByteVector bytes;
+    append_le(bytes, quality.buried_cells);
+    append_le(bytes, quality.blind_cells);
+    append_u16(bytes, quality.group_errors.size());
+    append_zeros(bytes, Layout::header_bytes - Layout::reserved);
+    for (const ProbeQuality& probe : quality.probes) {
+        append_f32(bytes, probe.transfer_error);
+        append_f32(bytes, probe.visibility_error);
+        append_f32(bytes, probe.static_error);
+        append_le(bytes, probe.paths);
+        append_le(bytes, probe.back_hits);
+        bytes.push_back(flags_of(probe));
+        append_zeros(bytes, Layout::probe_bytes - Layout::probe_reserved);
+    }
+    for (const std::vector<float>& errors : quality.group_errors) {
+        for (const float error : errors)
+            append_f32(bytes, error);
+    }
+    return bytes;
+}
+
 }  // namespace
 
 std::vector<RawSection> raw_sections(const Sector& sector) {
@@ -197,12 +258,19 @@ std::vector<RawSection> raw_sections(const Sector& sector) {
     add(SectionKind::statistics, statistics_section(sector.statistics));
     if (!sector.static_irradiance.empty())
         add(SectionKind::static_irradiance, static_irradiance_section(sector.static_irradiance));
-    if (sector.local_transfer)
+    if (sector.local_transfer) {
         add(SectionKind::local_transfer, local_transfer_section(*sector.local_transfer));
+        if (sector.local_transfer->sources.size() > max_probes)
+            sections.back().version = layout::many_sources_local_version;
+    }
     if (sector.convergence)
         add(SectionKind::convergence, convergence_section(*sector.convergence));
     if (!sector.interiors.empty())
         add(SectionKind::interiors, interiors_section(sector.interiors));
+    if (!sector.light_groups.empty())
+        add(SectionKind::light_groups, light_groups_section(sector.light_groups));
+    if (sector.quality)
+        add(SectionKind::quality, quality_section(*sector.quality));
     return sections;
 }
 

@@ -12,6 +12,7 @@ namespace drtv {
 struct RawSection {
     SectionKind kind;
     std::vector<std::uint8_t> bytes;
+    std::uint16_t version = 1;  // with the codec raw
 };
 
 // All that the sector has, in the order of their kinds; an optional one where there is something to write.

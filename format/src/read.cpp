@@ -1,4 +1,5 @@
-// From checked sections to a sector in memory.
+// From checked sections to a sector in memory. Long because it has a function or two for each kind of
+// section.
 #include <drtv/read.h>
 
 #include "bytes.h"
@@ -87,7 +88,7 @@ LocalReceiver read_local_receiver(ByteSpan raw, std::size_t at, ByteSpan mask) {
     LocalReceiver receiver;
     receiver.first_pair = load_u32(raw, at);
     receiver.exponent = load_i8(raw, at + 4);
-    std::ranges::copy(mask, receiver.sources.begin());
+    receiver.sources.assign(mask.begin(), mask.end());
     return receiver;
 }
 
@@ -95,7 +96,7 @@ void read_local_transfer(ByteSpan raw, std::size_t probe_count, LocalTransfer& l
     using Local = layout::LocalTransferLayout;
     const LocalTransferCounts counts = load_local_transfer_counts(raw);
     const Local parts = counts.parts(probe_count);
-    const std::size_t mask_bytes = Local::mask_bytes(counts.sources);
+    const std::size_t mask_bytes = local_mask_bytes(counts.sources);
     local.sources.reserve(counts.sources);
     for (std::size_t s = 0; s < counts.sources; ++s)
         local.sources.push_back(read_local_source(raw, Local::source_at(s)));
@@ -157,6 +158,56 @@ void read_interiors(ByteSpan raw, std::vector<Interior>& interiors) {
     }
 }
 
+std::string read_name(ByteSpan padded) {
+    return {padded.begin(), std::ranges::find(padded, 0)};
+}
+
+void read_light_groups(ByteSpan raw, std::size_t probe_count, std::vector<LightGroup>& groups) {
+    using Groups = layout::LightGroupsLayout;
+    groups.resize(load_u16(raw, Groups::group_count));
+    const Groups parts(probe_count, groups.size());
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        groups[g].name = read_name(raw.subspan(Groups::name_at(g), Groups::name_bytes));
+        groups[g].irradiance.resize(probe_count);
+        for (std::size_t p = 0; p < probe_count; ++p) {
+            StaticIrradiance& light = groups[g].irradiance[p];
+            load_codes(raw, parts.codes_at(g, p), light.codes);
+            light.exponent = load_i8(raw, parts.exponent_at(g, p));
+        }
+    }
+}
+
+ProbeQuality read_probe_quality(ByteSpan entry) {
+    using Layout = layout::QualityLayout;
+    ProbeQuality probe;
+    probe.transfer_error = load_f32(entry, 0);
+    probe.visibility_error = load_f32(entry, 4);
+    probe.static_error = load_f32(entry, 8);
+    probe.paths = load_u32(entry, Layout::paths);
+    probe.back_hits = load_u32(entry, Layout::back_hits);
+    const unsigned flags = entry[Layout::flags];
+    probe.budget_ended = (flags & Layout::budget_ended_bit) != 0;
+    probe.dark = (flags & Layout::dark_bit) != 0;
+    probe.moved = (flags & Layout::moved_bit) != 0;
+    return probe;
+}
+
+Quality read_quality(ByteSpan raw, std::size_t probe_count) {
+    using Layout = layout::QualityLayout;
+    Quality quality;
+    quality.buried_cells = load_u32(raw, Layout::buried_cells);
+    quality.blind_cells = load_u32(raw, Layout::blind_cells);
+    quality.group_errors.resize(load_u16(raw, Layout::group_count));
+    for (std::size_t p = 0; p < probe_count; ++p)
+        quality.probes.push_back(read_probe_quality(raw.subspan(Layout::probe_at(p), Layout::probe_bytes)));
+    const Layout parts(probe_count, quality.group_errors.size());
+    for (std::size_t g = 0; g < quality.group_errors.size(); ++g) {
+        for (std::size_t p = 0; p < probe_count; ++p)
+            quality.group_errors[g].push_back(load_f32(raw, parts.group_error_at(g, p)));
+    }
+    return quality;
+}
+
 }  // namespace
 
 void copy_sector(ByteSpan file, const Sections& sections, Sector& sector) {
@@ -185,6 +236,10 @@ void copy_sector(ByteSpan file, const Sections& sections, Sector& sector) {
         sector.convergence = read_convergence(sections.raw(SectionKind::convergence));
     if (sections.has(SectionKind::interiors))
         read_interiors(sections.raw(SectionKind::interiors), sector.interiors);
+    if (sections.has(SectionKind::light_groups))
+        read_light_groups(sections.raw(SectionKind::light_groups), probe_count, sector.light_groups);
+    if (sections.has(SectionKind::quality))
+        sector.quality = read_quality(sections.raw(SectionKind::quality), probe_count);
 }
 
 ReadStatus read_sector(ByteSpan bytes, Sector& sector) {

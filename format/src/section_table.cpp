@@ -92,7 +92,7 @@ ReadStatus check_stored(ByteSpan file, const SectionEntry& entry, std::size_t en
 
 }  // namespace
 
-constexpr std::array<std::pair<SectionKind, std::string_view>, 10> section_names = {
+constexpr std::array<std::pair<SectionKind, std::string_view>, 12> section_names = {
     {{SectionKind::bake, "bake"},
      {SectionKind::positions, "positions"},
      {SectionKind::sky_visibility, "sky visibility"},
@@ -102,7 +102,9 @@ constexpr std::array<std::pair<SectionKind, std::string_view>, 10> section_names
      {SectionKind::static_irradiance, "static irradiance"},
      {SectionKind::local_transfer, "local transfer"},
      {SectionKind::convergence, "convergence"},
-     {SectionKind::interiors, "interiors"}}};
+     {SectionKind::interiors, "interiors"},
+     {SectionKind::light_groups, "light groups"},
+     {SectionKind::quality, "quality"}}};
 
 std::string_view name_of_section(std::uint16_t kind) {
     const auto* found = std::ranges::find(

@@ -15,6 +15,8 @@ namespace drtv {
 namespace {
 
 using Local = layout::LocalTransferLayout;
+using Groups = layout::LightGroupsLayout;
+using QualityBytes = layout::QualityLayout;
 
 constexpr std::uint16_t last_required_kind = static_cast<std::uint16_t>(SectionKind::statistics);
 
@@ -23,8 +25,13 @@ struct SizeRange {
     std::size_t max;
 };
 
+std::size_t max_local_bytes(std::uint16_t version, std::size_t probe_count) {
+    const std::size_t sources = Local::max_sources(version);
+    return std::min(Local(probe_count, sources, probe_count * sources).end, layout::max_raw_section_bytes);
+}
+
 // What a section may have in raw bytes. The content says more where that is a range.
-SizeRange raw_size(SectionKind kind, std::size_t probe_count) {
+SizeRange raw_size(SectionKind kind, std::uint16_t version, std::size_t probe_count) {
     const auto exactly = [](std::size_t bytes) { return SizeRange{bytes, bytes}; };
     switch (kind) {
         case SectionKind::bake:
@@ -44,7 +51,11 @@ SizeRange raw_size(SectionKind kind, std::size_t probe_count) {
         case SectionKind::convergence:
             return exactly(layout::convergence_bytes);
         case SectionKind::local_transfer:
-            return {Local::header_bytes, Local(probe_count, max_probes, probe_count * max_probes).end};
+            return {Local::header_bytes, max_local_bytes(version, probe_count)};
+        case SectionKind::light_groups:
+            return {Groups(probe_count, 1).end, Groups(probe_count, max_light_groups).end};
+        case SectionKind::quality:
+            return {QualityBytes(probe_count, 0).end, QualityBytes(probe_count, max_light_groups).end};
         case SectionKind::interiors:
             break;
     }
@@ -55,10 +66,14 @@ SizeRange raw_size(SectionKind kind, std::size_t probe_count) {
 // What is not, is ignored.
 bool is_known(const SectionEntry& entry, std::uint16_t minor) {
     const auto kind = static_cast<SectionKind>(entry.kind);
+    if (kind >= SectionKind::light_groups)
+        return minor >= layout::minor_with_light_groups && entry.version == 1;
     if (kind == SectionKind::interiors)
         return minor >= layout::minor_with_interiors && entry.version == 1;
     if (kind == SectionKind::local_transfer && entry.version == layout::filtered_local_version)
         return minor >= layout::minor_with_interiors;
+    if (kind == SectionKind::local_transfer && entry.version == layout::many_sources_local_version)
+        return minor >= layout::minor_with_light_groups;
     return minor >= layout::minor_with_light_sections && entry.version == 1;
 }
 
@@ -83,7 +98,7 @@ struct SectionSource {
     std::size_t probe_count;
 
     [[nodiscard]] ByteSpan stored() const { return file.subspan(entry.offset, entry.stored_bytes); }
-    [[nodiscard]] bool filtered() const { return entry.version == layout::filtered_local_version; }
+    [[nodiscard]] bool filtered() const { return static_cast<Codec>(entry.codec) == Codec::filtered; }
 
     template <class... Parts>
     [[nodiscard]] ReadStatus refuse(const Parts&... parts) const {
@@ -93,19 +108,30 @@ struct SectionSource {
 
 ReadStatus check_raw_size(const SectionSource& source) {
     const SectionEntry& entry = source.entry;
-    const SizeRange size = raw_size(static_cast<SectionKind>(entry.kind), source.probe_count);
+    const auto kind = static_cast<SectionKind>(entry.kind);
+    const SizeRange size = raw_size(kind, entry.version, source.probe_count);
     if (entry.raw_bytes >= size.min && entry.raw_bytes <= size.max)
         return {};
     const std::string to_max = size.min == size.max ? "" : sentence(" to ", size.max);
     return source.refuse(" has ", entry.raw_bytes, " bytes, must have ", size.min, to_max);
 }
 
+// Of a section of a version that this reader knows.
+bool is_known_codec(Codec codec, std::uint16_t version) {
+    switch (codec) {
+        case Codec::raw:
+            return version != layout::filtered_local_version;
+        case Codec::zstd:
+            return version == 1;
+        case Codec::filtered:
+            return version != 1;
+    }
+    return false;
+}
+
 ReadStatus check_codec(const SectionSource& source) {
     const SectionEntry& entry = source.entry;
-    const auto codec = static_cast<Codec>(entry.codec);
-    const bool plain = codec == Codec::raw || codec == Codec::zstd;
-    const bool known = source.filtered() ? codec == Codec::filtered : plain;
-    if (known)
+    if (is_known_codec(static_cast<Codec>(entry.codec), entry.version))
         return {};
     return source.refuse(" of version ", entry.version, " has the unknown codec ", entry.codec);
 }
@@ -124,7 +150,8 @@ ReadStatus unpack(const SectionSource& source, std::vector<std::uint8_t>& raw) {
     if (!filtered)
         return {};
     const std::vector<std::uint8_t> planes = std::move(raw);
-    if (unfilter_local(planes, source.probe_count, raw_bytes, raw))
+    const std::size_t max_sources = Local::max_sources(source.entry.version);
+    if (unfilter_local(planes, source.probe_count, max_sources, raw_bytes, raw))
         return {};
     return source.refuse(": the ",
                          planes.size(),
@@ -141,6 +168,7 @@ ReadStatus decode(const SectionSource& source, Unpacked* unpacked, Section& sect
         return status;
     const bool is_raw = static_cast<Codec>(entry.codec) == Codec::raw;
     section.place = {entry.offset, is_raw};
+    section.version = entry.version;
     section.present = true;
     if (is_raw) {
         section.raw = source.stored();

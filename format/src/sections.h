@@ -19,10 +19,11 @@ namespace drtv {
 struct Section {
     std::span<const std::uint8_t> raw;
     layout::Place place;
+    std::uint16_t version = 1;
     bool present = false;  // and of a version that this reader knows
 };
 
-inline constexpr std::size_t known_kinds = 11;  // kind 0 is none
+inline constexpr std::size_t known_kinds = 13;  // kind 0 is none
 
 struct Sections {
     std::size_t probe_count = 0;

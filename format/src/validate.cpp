@@ -104,6 +104,8 @@ Report validate_sector(std::span<const std::uint8_t> bytes, const ValidateOption
     check_local_transfer(check(SectionKind::local_transfer));
     check_convergence(check(SectionKind::convergence));
     check_interiors(check(SectionKind::interiors));
+    check_light_groups(check(SectionKind::light_groups));
+    check_quality(check(SectionKind::quality));
     return findings.take();
 }
 

@@ -78,7 +78,7 @@ void check_receiver(const LocalTransfer& local, std::size_t p, const SectionChec
     const Local parts(local.receivers.size(), local.sources.size(), local.pairs.size());
     const std::size_t sources = count_sources(receiver);
     if (sources > max_local_sources) {
-        const std::size_t mask_at = parts.masks + p * Local::mask_bytes(local.sources.size());
+        const std::size_t mask_at = parts.masks + p * local_mask_bytes(local.sources.size());
         const auto path = [&] { return probe_path(p) + ".local"; };
         const auto message = [&] {
             return sentence("takes light from ", sources, " sources, over the limit of 128");

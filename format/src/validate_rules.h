@@ -23,5 +23,7 @@ void check_static_irradiance(const SectionCheck& check);
 void check_local_transfer(const SectionCheck& check);
 void check_convergence(const SectionCheck& check);
 void check_interiors(const SectionCheck& check);
+void check_light_groups(const SectionCheck& check);
+void check_quality(const SectionCheck& check);
 
 }  // namespace drtv

@@ -28,7 +28,7 @@ void view_local_transfer(ByteSpan raw, std::size_t probe_count, SectorView& view
     using Local = layout::LocalTransferLayout;
     const auto [sources, pairs] = load_local_transfer_counts(raw);
     const Local parts(probe_count, sources, pairs);
-    const std::size_t mask_bytes = Local::mask_bytes(sources);
+    const std::size_t mask_bytes = local_mask_bytes(sources);
     view.local_sources = elements<LocalSource>(raw, Local::header_bytes, sources);
     view.local_receivers = elements<StoredReceiver>(raw, parts.receivers, probe_count);
     view.local_mask_bytes = mask_bytes;
@@ -43,6 +43,15 @@ void view_interiors(ByteSpan raw, SectorView& view) {
     view.interiors = elements<StoredInterior>(raw, Rooms::header_bytes, interiors);
     view.interior_vertices = elements<Triple>(raw, parts.vertices, vertices);
     view.interior_triangles = elements<Triple>(raw, parts.triangles, triangles);
+}
+
+void view_light_groups(ByteSpan raw, std::size_t probe_count, SectorView& view) {
+    using Groups = layout::LightGroupsLayout;
+    const std::size_t groups = load_u16(raw, Groups::group_count);
+    const Groups parts(probe_count, groups);
+    view.light_group_names = elements<StoredName>(raw, Groups::header_bytes, groups);
+    view.light_group_irradiance = elements<LightCodes>(raw, parts.codes, groups * probe_count);
+    view.light_group_exponents = elements<std::int8_t>(raw, parts.exponents, groups * probe_count);
 }
 
 SectorView view_sections(ByteSpan file, const Sections& sections) {
@@ -64,6 +73,8 @@ SectorView view_sections(ByteSpan file, const Sections& sections) {
         view_local_transfer(sections.raw(SectionKind::local_transfer), count, view);
     if (sections.has(SectionKind::interiors))
         view_interiors(sections.raw(SectionKind::interiors), view);
+    if (sections.has(SectionKind::light_groups))
+        view_light_groups(sections.raw(SectionKind::light_groups), count, view);
     return view;
 }
 

@@ -1,6 +1,7 @@
 // Questions that a game asks of a sector where it lies.
 #include <drtv/view.h>
 
+#include "bytes.h"
 #include "position.h"
 
 #include <algorithm>
@@ -81,10 +82,12 @@ std::optional<Vector> point_in_steps(const StoredInterior& interior, const Float
 
 // How many of the receiver's pairs come before that with source `s`.
 std::size_t count_pairs_before(const std::uint8_t* mask, std::size_t s) {
-    const unsigned earlier_bits = (1u << (s % 8)) - 1;
-    int count = std::popcount(mask[s / 8] & earlier_bits);
-    for (std::size_t k = 0; k < s / 8; ++k)
-        count += std::popcount(mask[k]);
+    constexpr std::size_t word_bits = 64;
+    const auto word = [mask](std::size_t n) { return load_u64({mask, 8 * n + 8}, 8 * n); };
+    const std::uint64_t earlier_bits = (std::uint64_t{1} << (s % word_bits)) - 1;
+    int count = std::popcount(word(s / word_bits) & earlier_bits);
+    for (std::size_t n = 0; n < s / word_bits; ++n)
+        count += std::popcount(word(n));
     return static_cast<std::size_t>(count);
 }
 
@@ -110,6 +113,15 @@ std::uint8_t find_probe(const SectorView& sector, const Float3& world_m) {
 
 StaticIrradiance static_irradiance_of(const SectorView& sector, std::size_t p) {
     return {sector.static_irradiance[p], sector.static_exponents[p]};
+}
+
+std::string_view light_group_name(const SectorView& sector, std::size_t g) {
+    return sector.light_group_names[g].data();
+}
+
+StaticIrradiance light_group_irradiance_of(const SectorView& sector, std::size_t g, std::size_t p) {
+    const std::size_t n = g * sector.probe_count + p;
+    return {sector.light_group_irradiance[n], sector.light_group_exponents[n]};
 }
 
 LocalPair find_local_pair(const SectorView& sector, std::size_t p, std::size_t s) {

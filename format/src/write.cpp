@@ -44,7 +44,7 @@ void compress(StoredSection& section, bool filtered, std::size_t probe_count) {
         return;
     section.bytes = std::move(packed);
     section.entry.codec = static_cast<std::uint8_t>(filtered ? Codec::filtered : Codec::zstd);
-    if (filtered)
+    if (filtered && section.entry.version == 1)
         section.entry.version = layout::filtered_local_version;
 }
 
@@ -52,7 +52,7 @@ StoredSection store(RawSection raw, Codec codec, std::size_t probe_count) {
     StoredSection section{{}, std::move(raw.bytes)};
     SectionEntry& entry = section.entry;
     entry.kind = static_cast<std::uint16_t>(raw.kind);
-    entry.version = 1;
+    entry.version = raw.version;
     entry.raw_bytes = static_cast<std::uint32_t>(section.bytes.size());
     if (codec == Codec::zstd && !section.bytes.empty())
         compress(section, raw.kind == SectionKind::local_transfer, probe_count);
@@ -78,10 +78,13 @@ std::uint16_t minor_version(const std::vector<StoredSection>& sections) {
     for (const StoredSection& section : sections) {
         const auto kind = static_cast<SectionKind>(section.entry.kind);
         const bool filtered = section.entry.version == layout::filtered_local_version;
+        const bool many_sources = section.entry.version == layout::many_sources_local_version;
         if (kind >= SectionKind::static_irradiance)
             minor = std::max(minor, layout::minor_with_light_sections);
         if (kind == SectionKind::interiors || filtered)
             minor = std::max(minor, layout::minor_with_interiors);
+        if (kind >= SectionKind::light_groups || many_sources)
+            minor = std::max(minor, layout::minor_with_light_groups);
     }
     return minor;
 }
@@ -124,8 +127,14 @@ void assert_limits([[maybe_unused]] const Sector& sector) {
     assert(std::abs(std::int64_t{sector.z_origin_units}) <= max_z_origin_units);
     assert(sector.static_irradiance.empty() || sector.static_irradiance.size() == sector.probes.size());
     assert(!sector.local_transfer || sector.local_transfer->receivers.size() == sector.probes.size());
-    assert(!sector.local_transfer || sector.local_transfer->sources.size() <= max_probes);
+    assert(!sector.local_transfer || sector.local_transfer->sources.size() <= max_sector_sources);
     assert(sector.interiors.size() <= max_interiors);
+    assert(sector.light_groups.size() <= max_light_groups);
+    for ([[maybe_unused]] const LightGroup& group : sector.light_groups) {
+        assert(!group.name.empty() && group.name.size() <= max_light_group_name);
+        assert(group.irradiance.size() == sector.probes.size());
+    }
+    assert(!sector.quality || sector.quality->probes.size() == sector.probes.size());
 }
 
 }  // namespace

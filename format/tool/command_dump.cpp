@@ -57,6 +57,24 @@ void append_local(JsonWriter& json, const Sector& sector, const LocalReceiver& r
     json.end_array();
 }
 
+void append_quality(JsonWriter& json, const Quality& quality, std::size_t p) {
+    const ProbeQuality& probe = quality.probes[p];
+    json.key("quality").begin_object();
+    json.member("transfer_error", probe.transfer_error);
+    json.member("visibility_error", probe.visibility_error);
+    json.member("static_error", probe.static_error);
+    json.key("group_errors").begin_array();
+    for (const std::vector<float>& errors : quality.group_errors)
+        json.value(errors[p]);
+    json.end_array();
+    json.member("paths", probe.paths);
+    json.member("back_hits", probe.back_hits);
+    json.member("budget_ended", probe.budget_ended);
+    json.member("dark", probe.dark);
+    json.member("moved", probe.moved);
+    json.end_object();
+}
+
 void append_probe(JsonWriter& json, const Sector& sector, std::size_t p) {
     const Probe& probe = sector.probes[p];
     json.begin_object();
@@ -74,8 +92,16 @@ void append_probe(JsonWriter& json, const Sector& sector, std::size_t p) {
         append_codes(
             json, sector.static_irradiance[p].codes, scale_of_exponent(sector.static_irradiance[p].exponent));
     }
+    if (!sector.light_groups.empty()) {
+        json.key("light_groups").begin_array();
+        for (const LightGroup& group : sector.light_groups)
+            append_codes(json, group.irradiance[p].codes, scale_of_exponent(group.irradiance[p].exponent));
+        json.end_array();
+    }
     if (sector.local_transfer)
         append_local(json, sector, sector.local_transfer->receivers[p]);
+    if (sector.quality)
+        append_quality(json, *sector.quality, p);
     json.end_object();
 }
 
@@ -168,6 +194,12 @@ int run_dump(Arguments arguments) {
     json.begin_object().key("format_version").value(format_version(bytes));
     json.key("sector").begin_array().value(sector.i).value(sector.j).end_array();
     append_settings(json, sector.bake);
+    if (!sector.light_groups.empty()) {
+        json.key("light_groups").begin_array();
+        for (const LightGroup& group : sector.light_groups)
+            json.value(group.name);
+        json.end_array();
+    }
     json.key("probes").begin_array();
     for (std::size_t p = 0; p < sector.probes.size(); ++p)
         append_probe(json, sector, p);
@@ -178,6 +210,12 @@ int run_dump(Arguments arguments) {
     append_statistics(json, sector.statistics);
     if (sector.convergence)
         append_convergence(json, *sector.convergence);
+    if (sector.quality) {
+        json.key("quality").begin_object();
+        json.member("buried_cells", sector.quality->buried_cells);
+        json.member("blind_cells", sector.quality->blind_cells);
+        json.end_object();
+    }
     json.end_object();
     std::puts(json.text().c_str());
     return exit_valid;

@@ -5,7 +5,11 @@
 #include <drtv/read.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace drtv::tool {
 namespace {
@@ -51,17 +55,72 @@ void print_probes(const Sector& sector) {
                 visibility / (3.0 * static_cast<double>(sector.probes.size())));
 }
 
+// E/pi of the brightest side of all probes.
+double brightest(const std::vector<StaticIrradiance>& probes) {
+    float most = 0;
+    for (const StaticIrradiance& probe : probes) {
+        const float scale = scale_of_exponent(probe.exponent);
+        for (const auto& channel : probe.codes)
+            most = std::max(most, decode_fixed(*std::max_element(channel.begin(), channel.end()), scale));
+    }
+    return static_cast<double>(most);
+}
+
+// "0.004, 0.01, 0.03": median, 95th percentile, largest. REQUIRES: there are some.
+std::string shown_spread(std::vector<float> errors) {
+    std::sort(errors.begin(), errors.end());
+    const std::size_t last = errors.size() - 1;
+    const auto at = [&](std::size_t percent) {
+        return static_cast<double>(errors[(last * percent + 50) / 100]);
+    };
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.3g, %.3g, %.3g", at(50), at(95), at(100));
+    return text.data();
+}
+
+void print_errors(const std::string& name, std::vector<float> errors) {
+    std::printf("  %-18s %s\n", name.c_str(), shown_spread(std::move(errors)).c_str());
+}
+
+void print_quality(const Sector& sector) {
+    const Quality& quality = *sector.quality;
+    const auto count = [&](bool ProbeQuality::*flag) {
+        return std::ranges::count(quality.probes, true, flag);
+    };
+    const auto errors = [&](float ProbeQuality::*error) {
+        std::vector<float> values;
+        for (const ProbeQuality& probe : quality.probes)
+            values.push_back(probe.*error);
+        return values;
+    };
+    std::printf(
+        "quality         %td dark, %td moved out of a solid, %td short of the error asked; %u cells in "
+        "solids, %u that see no probe\n",
+        count(&ProbeQuality::dark),
+        count(&ProbeQuality::moved),
+        count(&ProbeQuality::budget_ended),
+        quality.buried_cells,
+        quality.blind_cells);
+    if (quality.probes.empty())
+        return;
+    std::printf("errors over their own mean: median, 95 %%, largest\n");
+    print_errors("transfer", errors(&ProbeQuality::transfer_error));
+    print_errors("sky visibility", errors(&ProbeQuality::visibility_error));
+    if (!sector.static_irradiance.empty())
+        print_errors("static light", errors(&ProbeQuality::static_error));
+    for (std::size_t g = 0; g < quality.group_errors.size(); ++g) {
+        const bool named = quality.group_errors.size() == sector.light_groups.size();
+        print_errors(named ? "group " + sector.light_groups[g].name : "a light group",
+                     quality.group_errors[g]);
+    }
+}
+
 // One line for each optional section that the file has.
 void print_light(const Sector& sector) {
-    if (!sector.static_irradiance.empty()) {
-        float most = 0;
-        for (const StaticIrradiance& probe : sector.static_irradiance) {
-            const float scale = scale_of_exponent(probe.exponent);
-            for (const auto& channel : probe.codes)
-                most = std::max(most, decode_fixed(*std::max_element(channel.begin(), channel.end()), scale));
-        }
-        std::printf("static light    up to %g (E/pi)\n", static_cast<double>(most));
-    }
+    if (!sector.static_irradiance.empty())
+        std::printf("static light    up to %g (E/pi)\n", brightest(sector.static_irradiance));
+    for (const LightGroup& group : sector.light_groups)
+        std::printf("light group     %s, up to %g (E/pi)\n", group.name.c_str(), brightest(group.irradiance));
     if (sector.local_transfer) {
         const LocalTransfer& local = *sector.local_transfer;
         const auto is_own = [](const LocalSource& source) { return source.di == 0 && source.dj == 0; };
@@ -88,6 +147,8 @@ void print_light(const Sector& sector) {
             c->paths_least,
             c->paths_most);
     }
+    if (sector.quality)
+        print_quality(sector);
 }
 
 }  // namespace

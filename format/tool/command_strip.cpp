@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <string_view>
 
 namespace drtv::tool {
@@ -16,8 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 4> optional_sections = {
-    "static_irradiance", "local_transfer", "convergence", "interiors"};
+constexpr std::array<std::string_view, 6> optional_sections = {
+    "static_irradiance", "light_groups", "local_transfer", "convergence", "interiors", "quality"};
+// Kept unless --keep says otherwise: what a game or its tools may ask for.
+constexpr std::span<const std::string_view> usually_kept =
+    std::span(optional_sections).first(optional_sections.size() - 1);
 
 struct Request {
     std::string in, out;
@@ -35,8 +39,10 @@ std::optional<Request> parse(Arguments arguments) {
         return std::nullopt;
     }
     Request request{parsed->positional.front(), parsed->value("--out"), {}, {}};
-    const std::string keep = parsed->has("--keep") ? parsed->value("--keep") : "all";
-    if (keep == "all") {
+    const std::string keep = parsed->value("--keep");
+    if (!parsed->has("--keep")) {
+        request.keep.assign(usually_kept.begin(), usually_kept.end());
+    } else if (keep == "all") {
         request.keep.assign(optional_sections.begin(), optional_sections.end());
     } else if (keep != "none") {
         request.keep = split_list(keep);
@@ -45,8 +51,8 @@ std::optional<Request> parse(Arguments arguments) {
         if (std::ranges::find(optional_sections, name) != optional_sections.end())
             continue;
         complain("strip: \"" + name +
-                 "\" is no optional section: there are static_irradiance, local_transfer, convergence and "
-                 "interiors; all and none stand alone");
+                 "\" is no optional section: there are static_irradiance, light_groups, local_transfer, "
+                 "convergence, interiors and quality; all and none stand alone");
         return std::nullopt;
     }
     const std::string codec = parsed->has("--codec") ? parsed->value("--codec") : "raw";
@@ -68,6 +74,10 @@ void strip(Sector& sector, const std::vector<std::string>& keep) {
         sector.convergence.reset();
     if (!keeps("interiors"))
         sector.interiors.clear();
+    if (!keeps("light_groups"))
+        sector.light_groups.clear();
+    if (!keeps("quality"))
+        sector.quality.reset();
 }
 
 // The folder's files keep their names below `out`; a single file becomes `out`, or lies in it where it is a

@@ -41,6 +41,7 @@ void print_sector(const SectorPlace& place, const SectorDiff& diff, std::size_t 
     tell(diff.statistics, "statistics differ");
     tell(diff.convergence, "the convergence differs");
     tell(diff.interiors, "interiors differ");
+    tell(diff.quality, "the quality differs");
     tell(diff.grid_place, "the grid's place differs");
     std::printf("\n");
     print_changes(diff.changes);
@@ -93,6 +94,7 @@ void append_sector(JsonWriter& json, const SectorPlace& place, const SectorDiff&
     json.member("statistics", diff.statistics);
     json.member("convergence", diff.convergence);
     json.member("interiors", diff.interiors);
+    json.member("quality", diff.quality);
     json.member("grid_place", diff.grid_place);
     append_changes(json, diff.changes);
     json.end_object();

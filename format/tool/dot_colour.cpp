@@ -8,7 +8,7 @@ namespace drtv::tool {
 namespace {
 
 constexpr float exposure = 1.5f;  // of relit colours, so that an open slope at noon is bright but not white
-// Where a picture turns red: a relative standard error, and a share of all rays.
+// Where a picture turns red: a relative standard error, and a share of all paths.
 constexpr float red_error = 0.1f;
 constexpr float red_back_hits = 0.05f;
 constexpr Float3 unknown_colour = {0.2f, 0.2f, 0.2f};
@@ -23,11 +23,13 @@ DistantLight noon_sun() {
 }
 
 // Ambient on a sphere: the mean over normals up and around and down, so that the bounce shows too.
-Float3 ambient_of(const Probe& probe, const StaticIrradiance* static_light) {
+Float3 ambient_of(const Sector& sector, std::size_t p) {
     static const DistantLight sky = noon_sky(), sun = noon_sun();
-    BasisColours colours = relight(probe, sky, sun);
-    if (static_light != nullptr)
-        add_static_irradiance(colours, *static_light);
+    BasisColours colours = relight(sector.probes[p], sky, sun);
+    if (!sector.static_irradiance.empty())
+        add_static_irradiance(colours, sector.static_irradiance[p]);
+    for (const LightGroup& group : sector.light_groups)
+        add_static_irradiance(colours, group.irradiance[p]);
     Float3 sum{};
     constexpr std::array<Float3, 6> normals = {
         {{0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, -1}}};
@@ -44,16 +46,22 @@ Float3 traffic_light(float share) {
     return {std::clamp(2 * share, 0.0f, 1.0f), std::clamp(2 - 2 * share, 0.0f, 1.0f), 0};
 }
 
-Float3 error_colour(const Sector& sector) {
-    if (!sector.convergence)
+Float3 error_colour(const Sector& sector, std::size_t p) {
+    if (!sector.quality)
         return unknown_colour;
-    return traffic_light(sector.convergence->error_p95 / red_error);
+    const ProbeQuality& probe = sector.quality->probes[p];
+    float largest = std::max({probe.transfer_error, probe.visibility_error, probe.static_error});
+    for (const std::vector<float>& errors : sector.quality->group_errors)
+        largest = std::max(largest, errors[p]);
+    return traffic_light(largest / red_error);
 }
 
-Float3 back_hit_colour(const Sector& sector) {
-    const double rays = std::max(1.0, static_cast<double>(sector.statistics.rays));
-    return traffic_light(static_cast<float>(static_cast<double>(sector.statistics.back_hits) / rays) /
-                         red_back_hits);
+Float3 back_hit_colour(const Sector& sector, std::size_t p) {
+    if (!sector.quality)
+        return unknown_colour;
+    const ProbeQuality& probe = sector.quality->probes[p];
+    const auto paths = static_cast<float>(std::max(probe.paths, 1u));
+    return traffic_light(static_cast<float>(probe.back_hits) / paths / red_back_hits);
 }
 
 }  // namespace
@@ -65,12 +73,11 @@ Float3 dot_colour(const Sector& sector, std::size_t p, float sky_visibility, Dot
         case DotQuantity::sky:
             return {sky_visibility, sky_visibility, sky_visibility};
         case DotQuantity::errors:
-            return error_colour(sector);
+            return error_colour(sector, p);
         case DotQuantity::back_hits:
-            return back_hit_colour(sector);
+            return back_hit_colour(sector, p);
     }
-    Float3 colour = ambient_of(sector.probes[p],
-                               sector.static_irradiance.empty() ? nullptr : &sector.static_irradiance[p]);
+    Float3 colour = ambient_of(sector, p);
     for (float& channel : colour)
         channel *= exposure;
     return colour;

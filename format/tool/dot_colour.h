@@ -7,9 +7,9 @@
 
 namespace drtv::tool {
 
-// What colours the probes. The last two colour all probes of a sector alike, from green to red: the 95th
-// percentile of its errors (grey where the file has none), and the share of its rays that met the back of a
-// one-sided surface, which tells holes in a map and walls that face the wrong way.
+// What colours the probes. The last two go from green to red, grey where the file has no quality: the largest
+// of a probe's errors, and the share of its paths that met the back of a one-sided surface, which tells holes
+// in a map and walls that face the wrong way.
 enum class DotQuantity { relit, sky, errors, back_hits };
 
 // Linear. `sky_visibility`: the average of the three upward directions. REQUIRES: p < sector.probes.size().

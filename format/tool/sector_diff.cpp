@@ -1,3 +1,4 @@
+// Long because each part of a sector is compared in its own way.
 #include "sector_diff.h"
 
 #include <drtv/relight.h>
@@ -5,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace drtv::tool {
 namespace {
@@ -24,6 +28,8 @@ BasisColours relit_of(const Sector& sector, std::size_t p) {
     BasisColours colours = relight(sector.probes[p], sky, {});
     if (!sector.static_irradiance.empty())
         add_static_irradiance(colours, sector.static_irradiance[p]);
+    for (const LightGroup& group : sector.light_groups)
+        add_static_irradiance(colours, group.irradiance[p]);
     return colours;
 }
 
@@ -43,17 +49,37 @@ double decode(std::int16_t code, float scale) {
     return static_cast<double>(decode_fixed(code, scale));
 }
 
-// 0 where the sector has none.
-double static_light(const Sector& sector, std::size_t p, std::size_t c, std::size_t b) {
-    if (sector.static_irradiance.empty())
+// 0 where there is none.
+double static_light(const std::vector<StaticIrradiance>& probes,
+                    std::size_t p,
+                    std::size_t c,
+                    std::size_t b) {
+    if (probes.empty())
         return 0;
-    const StaticIrradiance& light = sector.static_irradiance[p];
+    const StaticIrradiance& light = probes[p];
     return decode(light.codes[c][b], scale_of_exponent(light.exponent));
+}
+
+const std::vector<StaticIrradiance>& group_of(const Sector& sector, const std::string& name) {
+    static const std::vector<StaticIrradiance> none;
+    const auto group = std::ranges::find(sector.light_groups, name, &LightGroup::name);
+    return group == sector.light_groups.end() ? none : group->irradiance;
+}
+
+// Of both sectors, one of each.
+std::set<std::string> group_names(const Sector& first, const Sector& second) {
+    std::set<std::string> names;
+    for (const Sector* sector : {&first, &second}) {
+        for (const LightGroup& group : sector->light_groups)
+            names.insert(group.name);
+    }
+    return names;
 }
 
 class Differ {
   public:
-    Differ(const Sector& first, const Sector& second) : first_(first), second_(second) {}
+    Differ(const Sector& first, const Sector& second)
+        : first_(first), second_(second), group_names_(group_names(first, second)) {}
 
     SectorDiff run() {
         match_probes();
@@ -70,6 +96,7 @@ class Differ {
         diff_.statistics = first_.statistics != second_.statistics;
         diff_.convergence = first_.convergence != second_.convergence;
         diff_.interiors = first_.interiors != second_.interiors;
+        diff_.quality = first_.quality != second_.quality;
         return std::move(diff_);
     }
 
@@ -108,6 +135,7 @@ class Differ {
             for (std::size_t c = 0; c < channel_count; ++c) {
                 diff_transfer(p, c, b, then, now);
                 diff_static_irradiance(p, before, c, b);
+                diff_light_groups(p, before, c, b);
             }
         }
         diff_local(p, before);
@@ -132,10 +160,21 @@ class Differ {
     }
 
     void diff_static_irradiance(std::size_t p, std::size_t before, std::size_t c, std::size_t b) {
-        const double difference = static_light(second_, p, c, b) - static_light(first_, before, c, b);
+        const double difference = static_light(second_.static_irradiance, p, c, b) -
+                                  static_light(first_.static_irradiance, before, c, b);
         add(static_irradiance, difference, [&] {
             return probe_path(p) + ".static_irradiance." + channel_name[c] + index(b);
         });
+    }
+
+    void diff_light_groups(std::size_t p, std::size_t before, std::size_t c, std::size_t b) {
+        for (const std::string& name : group_names_) {
+            const double difference = static_light(group_of(second_, name), p, c, b) -
+                                      static_light(group_of(first_, name), before, c, b);
+            add(light_groups, difference, [&] {
+                return probe_path(p) + ".light_groups[" + name + "]." + channel_name[c] + index(b);
+            });
+        }
     }
 
     void diff_local(std::size_t p, std::size_t before) {
@@ -201,6 +240,7 @@ class Differ {
 
     const Sector& first_;
     const Sector& second_;
+    const std::set<std::string> group_names_;
     std::vector<std::size_t> second_of_first_;
     bool probe_changed_ = false;
     SectorDiff diff_;
@@ -234,7 +274,8 @@ bool SectorDiff::equal() const {
     const bool same_probes = removed.empty() && added == 0 && changed == 0;
     const bool same_pairs = pairs_added == 0 && pairs_removed == 0;
     const bool same_grid = cells == 0 && !grid_place;
-    return same_probes && same_pairs && same_grid && !settings && !statistics && !convergence && !interiors;
+    return same_probes && same_pairs && same_grid && !settings && !statistics && !convergence && !interiors &&
+           !quality;
 }
 
 SectorDiff diff_sectors(const Sector& first, const Sector& second) {

@@ -30,12 +30,13 @@ enum Quantity : std::size_t {
     transfer,
     sky_visibility,
     static_irradiance,
+    light_groups,
     local_transfer,
     relit,
     quantity_count
 };
 inline constexpr std::array<std::string_view, quantity_count> quantity_names = {
-    "transfer", "sky_visibility", "static_irradiance", "local_transfer", "relit"};
+    "transfer", "sky_visibility", "static_irradiance", "light_groups", "local_transfer", "relit"};
 
 struct SectorDiff {
     // For each probe of the second sector: the first's at the same place, or no_match; its largest relit
@@ -54,6 +55,7 @@ struct SectorDiff {
     bool statistics = false;
     bool convergence = false;
     bool interiors = false;
+    bool quality = false;
     bool grid_place = false;
     std::array<Change, quantity_count> changes;
 

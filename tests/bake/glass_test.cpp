@@ -154,7 +154,7 @@ TEST(ClearGlass, LocalTransferPassesItTwice) {
         const trace::FloatMode float_mode;
         const auto scene = world->scene_for({0, 0}, 512);
         const std::vector<glm::ivec3> places = {{20480, 20480, 1536}, {20480, 21504, 3072}};
-        return bake::integrate_local(*scene, places, places.size(),
+        return bake::integrate_local(*scene, places, all_pairs(places.size()),
                                      *world->samples(16384, bake::local_sample_dimensions(1)), {1, 512});
     };
     const bake::LocalLight open = local(nullptr);
@@ -164,8 +164,8 @@ TEST(ClearGlass, LocalTransferPassesItTwice) {
             for (std::size_t c = 0; c < channel_count; ++c) {
                 const double once =
                     glass.factor * static_cast<double>(glass.colour[static_cast<glm::length_t>(c)]);
-                const double expected = static_cast<double>(open.at(p, q)[c][0]) * once * once;
-                EXPECT_NEAR(behind.at(p, q)[c][0], expected, 0.08 * expected) << p << q << c;
+                const double expected = static_cast<double>(open.pairs[p][q][c][0]) * once * once;
+                EXPECT_NEAR(behind.pairs[p][q][c][0], expected, 0.08 * expected) << p << q << c;
             }
         }
     }
@@ -185,7 +185,7 @@ TEST(ClearGlass, PaneFarAwayChangesNothing) {
         const trace::FloatMode float_mode;
         const auto scene = world->scene_for({0, 0}, 512);
         const std::vector<glm::ivec3> places = {{20480, 20480, 1536}, {20480, 21504, 3072}};
-        return bake::integrate_local(*scene, places, places.size(),
+        return bake::integrate_local(*scene, places, all_pairs(places.size()),
                                      *world->samples(1024, bake::local_sample_dimensions(2)), {2, 512})
             .pairs;
     };

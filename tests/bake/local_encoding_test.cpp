@@ -1,5 +1,6 @@
 // Rounding of local transfer: to 8 significant bits of a pair, and still valid.
 #include "bakerd/bake/local_encoding.h"
+#include "tests/bake/worlds.h"
 
 #include <drtv/validate.h>
 #include <drtv/write.h>
@@ -23,6 +24,7 @@ bake::LocalSources sources_in_a_row() {
         sources.sources.push_back({0, 0, static_cast<std::uint8_t>(p), 0});
         sources.positions.emplace_back(static_cast<int>(p) * 4096, 0, 0);
     }
+    sources.of_receivers = all_pairs(probes);
     return sources;
 }
 
@@ -31,11 +33,10 @@ bake::LocalLight random_light(unsigned seed) {
     std::mt19937 random(seed);
     const auto uniform = [&] { return static_cast<float>(random() % 10001) / 10000; };
     bake::LocalLight light;
-    light.source_count = probes;
-    light.pairs.resize(probes * probes);
-    for (bake::LocalCoefficients& pair : light.pairs) {
+    light.pairs.assign(probes, std::vector<bake::LocalCoefficients>(probes));
+    for (std::size_t n = 0; n < probes * probes; ++n) {
         const float strength = std::pow(10.0f, -6 * uniform());
-        for (auto& channel : pair) {
+        for (auto& channel : light.pairs[n / probes][n % probes]) {
             channel[0] = strength * uniform();
             for (std::size_t i = 1; i < sh_count; ++i)
                 channel[i] = channel[0] * 1.1547f * (random() % 3 == 0 ? 1 : 2 * uniform() - 1);
@@ -48,7 +49,7 @@ TEST(LocalEncoding, KeepsEightBitsOfAPairsLargest) {
     const bake::LocalSources sources = sources_in_a_row();
     for (unsigned seed = 0; seed < 20; ++seed) {
         const bake::LocalLight light = random_light(seed);
-        const LocalTransfer local = bake::encode_local(sources, light, probes, 512);
+        const LocalTransfer local = bake::encode_local(sources, light);
         std::size_t pair = 0, coarse = 0;
         for (std::size_t p = 0; p < probes; ++p) {
             for (std::size_t s = 0; s < probes; ++s) {
@@ -73,8 +74,8 @@ TEST(LocalEncoding, KeepsEightBitsOfAPairsLargest) {
                 const float allowed = scale / fixed_point_max * (1.5f * static_cast<float>(step) + 0.5f);
                 for (std::size_t c = 0; c < channel_count; ++c) {
                     for (std::size_t i = 0; i < sh_count; ++i)
-                        ASSERT_NEAR(decode_fixed(codes[c][i], scale), light.at(p, s)[c][i],
-                                    allowed + std::abs(light.at(p, s)[c][i]) * 1e-4f);
+                        ASSERT_NEAR(decode_fixed(codes[c][i], scale), light.pairs[p][s][c][i],
+                                    allowed + std::abs(light.pairs[p][s][c][i]) * 1e-4f);
                 }
             }
         }
@@ -87,7 +88,7 @@ TEST(LocalEncoding, RoundedPairsAreValid) {
     for (unsigned seed = 0; seed < 50; ++seed) {
         Sector sector;
         sector.probes.resize(probes);
-        sector.local_transfer = bake::encode_local(sources, random_light(seed), probes, 512);
+        sector.local_transfer = bake::encode_local(sources, random_light(seed));
         for (const Finding& finding :
              validate_sector(write_sector(sector), {.max_findings = 10'000}).findings) {
             EXPECT_NE(finding.issue, &issue::local_transfer_range) << finding.path << " " << finding.message;

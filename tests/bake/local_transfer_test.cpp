@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
 
 #include <cmath>
 #include <numbers>
@@ -26,7 +29,7 @@ bake::LocalLight local_at(bake::World& world, const std::vector<glm::vec3>& plac
     std::vector<glm::ivec3> units;
     for (const glm::vec3& place : places)
         units.emplace_back(glm::round(place * 1024.0f));
-    return bake::integrate_local(*scene, units, places.size(),
+    return bake::integrate_local(*scene, units, all_pairs(places.size()),
                                  *world.samples(rays, bake::local_sample_dimensions(bounces)),
                                  {bounces, 512});
 }
@@ -55,7 +58,7 @@ TEST(LocalTransfer, LampOverAPlane) {
                 mean += radiance * solid;
                 down += radiance * solid * heights[p] / std::sqrt(to_probe);
             }
-            const bake::LocalCoefficients& found = light.at(p, q);
+            const bake::LocalCoefficients& found = light.pairs[p][q];
             EXPECT_NEAR(found[0][0], static_cast<double>(sh_y0) * mean,
                         sampling * static_cast<double>(sh_y0) * mean)
                 << p << " " << q;
@@ -87,8 +90,10 @@ TEST(LocalTransfer, FurtherBouncesAreTheGeometricSeries) {
         places.emplace_back(place(random), place(random), place(random));
     for (std::uint32_t bounces = 1; bounces <= 4; ++bounces) {
         const bake::LocalLight light = local_at(*world, places, 128, bounces);
-        for (const bake::LocalCoefficients& pair : light.pairs)
-            sums[bounces - 1] += static_cast<double>(pair[0][0]);
+        for (const auto& of_receiver : light.pairs) {
+            for (const bake::LocalCoefficients& pair : of_receiver)
+                sums[bounces - 1] += static_cast<double>(pair[0][0]);
+        }
     }
     const double first = sums[0], second = sums[1] - sums[0], third = sums[2] - sums[1],
                  fourth = sums[3] - sums[2];
@@ -116,8 +121,8 @@ TEST(LocalTransfer, PairsAreReciprocal) {
     double difference = 0, total = 0;
     for (std::size_t p = 0; p < places.size(); ++p) {
         for (std::size_t q = 0; q < p; ++q) {
-            const double there = static_cast<double>(light.at(p, q)[0][0]),
-                         back = static_cast<double>(light.at(q, p)[0][0]);
+            const double there = static_cast<double>(light.pairs[p][q][0][0]),
+                         back = static_cast<double>(light.pairs[q][p][0][0]);
             difference += std::abs(there - back);
             total += there + back;
         }
@@ -138,20 +143,25 @@ TEST(LocalTransfer, ClosedRoomsExchangeNothing) {
     for (std::size_t p = 0; p < 4; ++p) {
         for (std::size_t q = 0; q < 4; ++q) {
             if (p / 2 == q / 2) {
-                EXPECT_GT(light.at(p, q)[0][0], 0) << p << " " << q;
+                EXPECT_GT(light.pairs[p][q][0][0], 0) << p << " " << q;
             } else {
-                EXPECT_EQ(light.at(p, q), bake::LocalCoefficients{}) << p << " " << q;
+                EXPECT_EQ(light.pairs[p][q], bake::LocalCoefficients{}) << p << " " << q;
             }
         }
     }
 }
 
-TEST(LocalTransfer, SectorHoldsItsOwnProbesThenNeighbours) {
+bake::Settings settings_without_local() {
+    bake::Settings settings;
+    settings.rays = 64;
+    return settings;
+}
+
+TEST(LocalTransfer, EachReceiverHasItsNearestSources) {
     GltfBuilder b;
     b.place(ground(150), "", b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}));
     const auto world = open_world(b);
-    bake::Settings settings;
-    settings.rays = 64;
+    bake::Settings settings = settings_without_local();
     settings.local_transfer = true;
     settings.local_rays = 16;
     auto baked = bake::bake_sector(*world, {0, 0}, settings);
@@ -159,16 +169,44 @@ TEST(LocalTransfer, SectorHoldsItsOwnProbesThenNeighbours) {
     ASSERT_TRUE(baked->sector.local_transfer);
     const LocalTransfer& local = *baked->sector.local_transfer;
     ASSERT_EQ(baked->sector.probes.size(), 64u);
-    ASSERT_EQ(local.sources.size(), 128u);
-    for (std::size_t s = 0; s < 128; ++s) {
+    for (std::size_t s = 0; s < local.sources.size(); ++s) {
         const bool own = local.sources[s].di == 0 && local.sources[s].dj == 0;
         EXPECT_EQ(own, s < 64) << s;
         if (own) {
             EXPECT_EQ(local.sources[s].probe, s);
         }
     }
-    // The first neighbours stand 8 m from the border's probes.
-    EXPECT_EQ(std::abs(local.sources[64].di) + std::abs(local.sources[64].dj), 1);
+    // Each of all around it that are nearer than what it leaves out; the probes stand 8 m apart.
+    std::vector<glm::ivec3> places;
+    for (std::int32_t dj = -1; dj <= 1; ++dj) {
+        for (std::int32_t di = -1; di <= 1; ++di) {
+            const auto other = bake::bake_sector(*world, {di, dj}, settings_without_local());
+            ASSERT_TRUE(other);
+            for (const placement::Position& position : other->positions)
+                places.push_back(position);
+        }
+    }
+    ASSERT_EQ(places.size(), 9u * 64);
+    for (std::size_t p = 0; p < 64; ++p) {
+        std::vector<float> distances;
+        for (const glm::ivec3& place : places)
+            distances.push_back(glm::distance(glm::vec3(baked->positions[p]), glm::vec3(place)));
+        std::ranges::sort(distances);
+        std::size_t pairs = 0;
+        float farthest = 0;
+        for (std::size_t s = 0; s < local.sources.size(); ++s) {
+            if (!has_pair(local.receivers[p], s))
+                continue;
+            ++pairs;
+            const LocalSource& source = local.sources[s];
+            const std::size_t sector = static_cast<std::size_t>(3 * (source.dj + 1) + source.di + 1);
+            const glm::ivec3 place = places[64 * sector + source.probe];
+            farthest = std::max(farthest, glm::distance(glm::vec3(baked->positions[p]), glm::vec3(place)));
+        }
+        EXPECT_LE(pairs, 128u);
+        EXPECT_GT(pairs, 120u) << p;
+        EXPECT_LE(farthest, distances[127]) << p;
+    }
     const auto bytes = bake::encode_sector(baked->sector, baked->warnings);
     ASSERT_TRUE(bytes) << bytes.error();
     Sector read;

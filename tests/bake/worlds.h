@@ -8,6 +8,7 @@
 #include <drtv/sector.h>
 
 #include <memory>
+#include <numeric>
 #include <vector>
 
 namespace drtv::test {
@@ -39,5 +40,12 @@ struct Clutter {
 
 // A box with its fronts inwards: a room.
 [[nodiscard]] Shape room(const glm::vec3& low, const glm::vec3& high);
+
+// Every source to each receiver, of as many of both.
+[[nodiscard]] inline std::vector<std::vector<std::uint32_t>> all_pairs(std::size_t count) {
+    std::vector<std::uint32_t> all(count);
+    std::iota(all.begin(), all.end(), 0u);
+    return std::vector<std::vector<std::uint32_t>>(count, all);
+}
 
 }  // namespace drtv::test

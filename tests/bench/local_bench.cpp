@@ -15,15 +15,14 @@
 namespace drtv::bench {
 namespace {
 
-// Of the numbers (receiver, source) those that matter.
-std::vector<std::pair<std::size_t, std::size_t>> strong_pairs(const bake::LocalLight& light,
-                                                              std::size_t receivers) {
+// Of the numbers (receiver, its n-th source) those that matter.
+std::vector<std::pair<std::size_t, std::size_t>> strong_pairs(const bake::LocalLight& light) {
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for (std::size_t p = 0; p < receivers; ++p) {
+    for (std::size_t p = 0; p < light.pairs.size(); ++p) {
         std::vector<std::pair<double, std::size_t>> row;
         double total = 0;
-        for (std::size_t q = 0; q < light.source_count; ++q) {
-            row.emplace_back(static_cast<double>(light.at(p, q)[1][0]), q);
+        for (std::size_t q = 0; q < light.pairs[p].size(); ++q) {
+            row.emplace_back(static_cast<double>(light.pairs[p][q][1][0]), q);
             total += row.back().first;
         }
         std::sort(row.rbegin(), row.rend());
@@ -84,12 +83,12 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
 
     const auto local_with = [&](std::uint32_t rays) {
         return bake::integrate_local(
-            *scene, sources.positions, receivers,
+            *scene, sources.positions, sources.of_receivers,
             *world->samples(rays, bake::local_sample_dimensions(settings.local_bounces)),
             {settings.local_bounces, settings.reach_m});
     };
     const bake::LocalLight truth = local_with(8192);
-    const auto pairs = strong_pairs(truth, receivers);
+    const auto pairs = strong_pairs(truth);
     for (const std::uint32_t rays : {16u, 32u, 64u, 128u, 256u, 512u, 1024u}) {
         double best = 1e30;
         bake::LocalLight light;
@@ -100,7 +99,7 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
         }
         std::vector<double> errors;
         for (const auto& [p, q] : pairs)
-            errors.push_back(difference(light.at(p, q), truth.at(p, q)));
+            errors.push_back(difference(light.pairs[p][q], truth.pairs[p][q]));
         std::sort(errors.begin(), errors.end());
         std::printf(
             "rays %4u: %6.0f ms (%.2f of the rest), %7.0f k rays, error of %zu pairs: median %.2f %%, p95 "
@@ -108,11 +107,12 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
             rays, best * 1e3, best / rest_seconds[1], static_cast<double>(light.rays) / 1e3, errors.size(),
             100 * errors[errors.size() / 2], 100 * errors[errors.size() * 95 / 100]);
         if (rays == settings.local_rays) {
-            const LocalTransfer stored = bake::encode_local(sources, light, receivers, settings.reach_m);
+            const LocalTransfer stored = bake::encode_local(sources, light);
             std::vector<double> rounding;
             for (std::size_t p = 0; p < receivers; ++p) {
                 std::uint32_t n = stored.receivers[p].first_pair;
-                for (std::size_t q = 0; q < sources.positions.size(); ++q) {
+                for (std::size_t k = 0; k < sources.of_receivers[p].size(); ++k) {
+                    const std::size_t q = sources.of_receivers[p][k];
                     if (!has_pair(stored.receivers[p], q))
                         continue;
                     const float scale =
@@ -123,8 +123,8 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
                             decoded[c][i] = decode_fixed(stored.pairs[n][c][i], scale);
                     }
                     ++n;
-                    if (light.at(p, q)[1][0] > 0)
-                        rounding.push_back(difference(decoded, light.at(p, q)));
+                    if (light.pairs[p][k][1][0] > 0)
+                        rounding.push_back(difference(decoded, light.pairs[p][k]));
                 }
             }
             std::sort(rounding.begin(), rounding.end());

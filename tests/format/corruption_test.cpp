@@ -104,11 +104,16 @@ const std::vector<std::pair<std::uint16_t, std::size_t>> required = {{1, 0}, {2,
 const std::vector<std::pair<std::uint16_t, std::size_t>> optional = {{2, 0},  {7, 64}, {8, 0},  {8, 16},
                                                                      {8, 32}, {8, 64}, {8, 96}, {9, 0}};
 
+const std::vector<std::pair<std::uint16_t, std::size_t>> latest = {{8, 0},    {11, 0}, {11, 16}, {11, 80},
+                                                                   {11, 144}, {12, 0}, {12, 16}, {12, 40}};
+
 INSTANTIATE_TEST_SUITE_P(, DamagedSector,
                          testing::Values(Kind{"raw", Codec::raw, golden_sector, required},
                                          Kind{"zstd", Codec::zstd, golden_sector, required},
                                          Kind{"raw_1_1", Codec::raw, golden_sector_1_1, optional},
-                                         Kind{"zstd_1_1", Codec::zstd, golden_sector_1_1, optional}),
+                                         Kind{"zstd_1_1", Codec::zstd, golden_sector_1_1, optional},
+                                         Kind{"raw_1_3", Codec::raw, golden_sector_1_3, latest},
+                                         Kind{"zstd_1_3", Codec::zstd, golden_sector_1_3, latest}),
                          [](const auto& kind) { return kind.param.name; });
 
 }  // namespace

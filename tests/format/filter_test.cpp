@@ -19,7 +19,7 @@ Bytes local_section(const Sector& sector) {
 
 Bytes back(const Bytes& filtered, std::size_t probes, std::size_t raw_bytes) {
     Bytes raw;
-    EXPECT_TRUE(unfilter_local(filtered, probes, raw_bytes, raw));
+    EXPECT_TRUE(unfilter_local(filtered, probes, max_sector_sources, raw_bytes, raw));
     return raw;
 }
 
@@ -27,6 +27,11 @@ TEST(LocalFilter, GivesBackEverySection) {
     for (std::uint32_t seed = 0; seed < 12; ++seed) {
         const Bytes raw = local_section(random_sector_1_1(seed, 1 + seed * 20));
         EXPECT_EQ(back(filter_local(raw, 1 + seed * 20), 1 + seed * 20, raw.size()), raw) << seed;
+        const Bytes many = local_section(random_sector_1_3(seed, 1 + seed * 20));
+        const Bytes filtered = filter_local(many, 1 + seed * 20);
+        EXPECT_EQ(back(filtered, 1 + seed * 20, many.size()), many) << seed;
+        Bytes out;
+        EXPECT_FALSE(unfilter_local(filtered, 1 + seed * 20, max_probes, many.size(), out)) << seed;
     }
 }
 
@@ -122,7 +127,7 @@ TEST(LocalFilter, AnyBytesOfTheRightSizeGiveASectionOrNothing) {
         for (int n = 0; n < 3; ++n)
             damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
         Bytes out;
-        sections += unfilter_local(damaged, 9, raw.size(), out) ? 1u : 0u;
+        sections += unfilter_local(damaged, 9, max_probes, raw.size(), out) ? 1u : 0u;
         ASSERT_TRUE(out.empty() || out.size() == raw.size());
     }
     EXPECT_GT(sections, 1000u);

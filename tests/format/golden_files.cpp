@@ -15,6 +15,8 @@ Sector only(Sector sector, Section Sector::*section) {
     one.local_transfer.reset();
     one.convergence.reset();
     one.interiors.clear();
+    one.light_groups.clear();
+    one.quality.reset();
     one.*section = sector.*section;
     return one;
 }
@@ -62,7 +64,12 @@ std::vector<GoldenFile> golden_files() {
             {"format_1_2", golden_sector_1_2()},
             {"format_1_2_interiors", only(golden_sector_1_2(), &Sector::interiors)},
             {"format_1_2_zstd", golden_sector_1_2(), Codec::zstd},
-            {"format_1_2_filtered", sector_of_any_codes(), Codec::zstd, false}};
+            {"format_1_2_filtered", sector_of_any_codes(), Codec::zstd, false},
+            {"format_1_3", golden_sector_1_3()},
+            {"format_1_3_light_groups", only(golden_sector_1_3(), &Sector::light_groups)},
+            {"format_1_3_local_transfer", only(golden_sector_1_3(), &Sector::local_transfer)},
+            {"format_1_3_quality", only(golden_sector_1_3(), &Sector::quality)},
+            {"format_1_3_zstd", golden_sector_1_3(), Codec::zstd}};
 }
 
 }  // namespace drtv::test

@@ -57,16 +57,16 @@ TEST(GoldenFile, IsThereForEachVersionAndEachKind) {
             codecs.insert(entry.codec);
         }
     }
-    EXPECT_EQ(minors, (std::set<std::uint16_t>{0, 1, 2}));
+    EXPECT_EQ(minors, (std::set<std::uint16_t>{0, 1, 2, 3}));
     EXPECT_EQ(codecs, (std::set<std::uint16_t>{0, 1, 2}));
-    EXPECT_EQ(kinds.size(), 10u);
+    EXPECT_EQ(kinds.size(), 12u);
     EXPECT_EQ(name_of_section(static_cast<std::uint16_t>(kinds.size() + 1)), "unknown")
         << "a new kind needs a golden file";
 }
 
 // Every byte is covered: by a checksum, or by the rule that padding is 0.
 TEST(GoldenFile, EveryFlippedBitIsReported) {
-    for (const char* name : {"format_1_0", "format_1_2", "format_1_2_zstd"}) {
+    for (const char* name : {"format_1_0", "format_1_2", "format_1_2_zstd", "format_1_3"}) {
         Bytes flipped = read_test_file(golden_folder + name + ".drtv");
         ASSERT_FALSE(flipped.empty());
         for (std::size_t bit = 0; bit < 8 * flipped.size(); ++bit) {
@@ -104,10 +104,11 @@ Bytes bytes_of_listing(std::istream& listing) {
 }
 
 // The file of version 1.0, the local transfer section of that of version 1.1, the interiors of that of
-// version 1.2.
+// version 1.2, light groups and quality of that of version 1.3.
 TEST(Specification, ExamplesAreTheGoldenFiles) {
     const std::vector<Bytes> expected = {golden_bytes(), stored_of(golden_bytes_1_1(), 8),
-                                         stored_of(golden_bytes_1_2(), 10)};
+                                         stored_of(golden_bytes_1_2(), 10), stored_of(golden_bytes_1_3(), 11),
+                                         stored_of(golden_bytes_1_3(), 12)};
     std::size_t listings = 0;
     std::ifstream page(DRTV_SOURCE_DIR "/format/SPEC.md");
     for (std::string line; std::getline(page, line);) {

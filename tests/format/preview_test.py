@@ -5,7 +5,7 @@ import sys
 import unittest
 import zlib
 
-from tool_case import GOLDEN, GOLDEN_1_1, UNREADABLE, Tool, golden, seal
+from tool_case import GOLDEN, GOLDEN_1_1, GOLDEN_1_3, UNREADABLE, Tool, golden, seal
 
 
 class Preview(Tool):
@@ -69,22 +69,38 @@ class Preview(Tool):
         self.assertEqual(row[0], 1)  # each pixel is stored as its difference to the one before
         return tuple(sum(row[1 + c : 1 + 3 * (x + 1) : 3]) % 256 for c in range(3))
 
-    def test_back_hits_colour_a_sector_green_to_red(self):
+    # In the golden file of 1.3: the quality of probe 0, and its errors of the two light groups.
+    QUALITY, GROUP_ERRORS = 7216, (7288, 7300)
+
+    def with_quality(self, errors=(0, 0, 0), group_errors=(0, 0), paths=1, back_hits=0):
+        data = golden(GOLDEN_1_3)
+        struct.pack_into("<fffII", data, self.QUALITY, *errors, paths, back_hits)
+        for offset, error in zip(self.GROUP_ERRORS, group_errors):
+            struct.pack_into("<f", data, offset, error)
+        return seal(data)
+
+    def test_back_hits_colour_a_probe_green_to_red_and_grey_where_unknown(self):
         for back_hits, colour in (
             (0, (0, 255, 0)),
             (25, (255, 255, 0)),
             (50, (255, 0, 0)),
             (1000, (255, 0, 0)),
         ):
-            data = golden()
-            struct.pack_into("<QQ", data, 4640 + 24, 1000, back_hits)
-            self.assertEqual(self.middle_pixel(seal(data), -48, 160, "back_hits"), colour, back_hits)
+            data = self.with_quality(paths=1000, back_hits=back_hits)
+            self.assertEqual(self.middle_pixel(data, -48, 160, "back_hits"), colour, back_hits)
+        red, green, blue = self.middle_pixel(golden(), -48, 160, "back_hits")
+        self.assertTrue(red == green == blue < 255)
 
-    def test_errors_colour_a_sector_green_to_red_and_grey_where_unknown(self):
-        for p95, colour in ((0.0, (0, 255, 0)), (0.05, (255, 255, 0)), (0.3, (255, 0, 0))):
-            data = golden(GOLDEN_1_1)
-            struct.pack_into("<f", data, 5232 + 8, p95)
-            self.assertEqual(self.middle_pixel(seal(data), -48, 160, "errors"), colour, p95)
+    def test_the_largest_error_colours_a_probe_green_to_red_and_grey_where_unknown(self):
+        for errors, group_errors, colour in (
+            ((0, 0, 0), (0, 0), (0, 255, 0)),
+            ((0.01, 0.05, 0), (0, 0), (255, 255, 0)),
+            ((0, 0, 0.05), (0.01, 0), (255, 255, 0)),
+            ((0.3, 0, 0), (0, 0), (255, 0, 0)),
+            ((0, 0, 0), (0, 0.3), (255, 0, 0)),
+        ):
+            data = self.with_quality(errors, group_errors)
+            self.assertEqual(self.middle_pixel(data, -48, 160, "errors"), colour, errors)
         red, green, blue = self.middle_pixel(golden(), -48, 160, "errors")
         self.assertTrue(red == green == blue < 255)
 

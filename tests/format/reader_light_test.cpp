@@ -15,6 +15,12 @@ constexpr std::size_t sources_start = local_start + 16, receivers_start = local_
                       masks_start = local_start + 64;
 constexpr std::size_t static_entry = entry(6), local_entry = entry(7), convergence_entry = entry(8);
 
+// In that of 1.3: 259 local sources, two light groups.
+const Bytes latest = golden_bytes_1_3();
+const std::size_t local_start_1_3 = section_start(latest, 8);
+const std::size_t groups_start = section_start(latest, 11);
+const std::size_t quality_start = section_start(latest, 12);
+
 constexpr std::array<std::uint16_t, 3> light_kinds = {7, 8, 9};
 
 Edit edit() {
@@ -119,6 +125,52 @@ const std::vector<Rejection> cases = {
     {"LocalPaddingNotZeroPacked", ReadError::bad_section, local_start, "padding behind the sources",
      [] { return with_stored(good, 8, 1, zstd_frame(Edit(stored_of(good, 8)).u8(28, 1).as_is())); }},
 
+    {"LocalOfVersion3TooManySources", ReadError::bad_section, local_start_1_3,
+     "2296 sources are over the limit of 2295",
+     [] { return Edit(latest).u16(local_start_1_3, 2296).sealed(); }},
+    {"LocalOfVersion3MasksTooNarrow", ReadError::bad_section, local_start_1_3 + 2,
+     "masks of 32 bytes, must be of 48 for 259 sources",
+     [] { return Edit(latest).u16(local_start_1_3 + 2, 32).sealed(); }},
+    {"LocalOfVersion3WithPlainZstd", ReadError::bad_section, local_start_1_3,
+     "of version 3 has the unknown codec 1",
+     [] { return Edit(latest).u8(entry(7) + at::codec, 1).sealed(); }},
+
+    {"NoLightGroups", ReadError::bad_section, groups_start, "0 groups, must be 1 to 8",
+     [] { return Edit(latest).u16(groups_start, 0).sealed(); }},
+    {"TooManyLightGroups", ReadError::bad_section, groups_start, "9 groups, must be 1 to 8",
+     [] { return Edit(latest).u16(groups_start, 9).sealed(); }},
+    {"LightGroupsReservedByte", ReadError::bad_section, groups_start + 2, "reserved",
+     [] { return Edit(latest).u8(groups_start + 15, 1).sealed(); }},
+    {"FewerLightGroupsThanBytes", ReadError::bad_section, groups_start,
+     "has 294 bytes, must have 155 for 1 groups", [] { return Edit(latest).u16(groups_start, 1).sealed(); }},
+    {"LightGroupWithoutName", ReadError::bad_section, groups_start + 80, "light group 1: its name",
+     [] { return Edit(latest).u8(groups_start + 80, 0).sealed(); }},
+    {"LightGroupNameWithoutEnd", ReadError::bad_section, groups_start + 16, "light group 0: its name",
+     [] {
+         Edit file(latest);
+         for (std::size_t n = 0; n < 64; ++n)
+             file.u8(groups_start + 16 + n, 'a');
+         return file.sealed();
+     }},
+    {"LightGroupNameWithSomethingBehindIt", ReadError::bad_section, groups_start + 16,
+     "light group 0: its name", [] { return Edit(latest).u8(groups_start + 79, 'a').sealed(); }},
+
+    {"QualityTooManyGroups", ReadError::bad_section, quality_start + 8, "9 light groups are over",
+     [] { return Edit(latest).u16(quality_start + 8, 9).sealed(); }},
+    {"QualityReservedByte", ReadError::bad_section, quality_start + 10, "reserved",
+     [] { return Edit(latest).u8(quality_start + 15, 1).sealed(); }},
+    {"QualityOfFewerGroupsThanBytes", ReadError::bad_section, quality_start + 8,
+     "has 112 bytes, must have 100 for 1 light groups",
+     [] { return Edit(latest).u16(quality_start + 8, 1).sealed(); }},
+    {"QualityErrorNotANumber", ReadError::bad_section, quality_start + 16 + 24 + 8, "not finite",
+     [] { return Edit(latest).u32(quality_start + 16 + 24 + 8, nan_bits).sealed(); }},
+    {"QualityUnknownFlag", ReadError::bad_section, quality_start + 16 + 20, "flags 8 are unknown",
+     [] { return Edit(latest).u8(quality_start + 16 + 20, 8).sealed(); }},
+    {"QualityReservedProbeByte", ReadError::bad_section, quality_start + 16 + 21, "reserved bytes",
+     [] { return Edit(latest).u8(quality_start + 16 + 23, 1).sealed(); }},
+    {"QualityGroupErrorInfinite", ReadError::bad_section, quality_start + 88 + 20, "not finite",
+     [] { return Edit(latest).u32(quality_start + 88 + 20, infinity_bits).sealed(); }},
+
     {"ConvergenceTooShort", ReadError::bad_section, convergence_start,
      "convergence section (kind 9) has 47 bytes, must have 48",
      [] { return with_raw(9, cut(stored_of(good, 9))); }},
@@ -162,6 +214,22 @@ TEST(LightSectionVersions, SectionOfALaterVersionIsIgnored) {
     EXPECT_TRUE(status.ok()) << status.message;
     EXPECT_EQ(sector, expected);
     EXPECT_TRUE(validate_sector(file).valid());
+}
+
+// What these kinds, and this version of local transfer, held before is anything.
+TEST(LightSectionVersions, FileOfVersion12WithThoseOf13IsReadAsBefore) {
+    Sector expected = golden_sector_1_3();
+    expected.local_transfer.reset();
+    expected.light_groups.clear();
+    expected.quality.reset();
+    Edit file(latest);
+    for (const std::size_t start : {local_start_1_3, groups_start, quality_start})
+        file.u8(start, 0xFF);
+    Sector sector;
+    const ReadStatus status = read_sector(file.u16(at::minor, 2).sealed(), sector);
+    EXPECT_TRUE(status.ok()) << status.message;
+    EXPECT_EQ(sector, expected);
+    EXPECT_FALSE(read_sector(file.u16(at::minor, 3).sealed(), sector).ok());
 }
 
 TEST(LightSectionVersions, EachSectionStandsAlone) {

@@ -243,7 +243,7 @@ TEST(SectorReaderOffsets, PointAtTheFirstByteOfAPackedSection) {
 // What a later minor version may bring: an unknown section, of any version and codec, anywhere in the file.
 TEST(SectorReaderVersions, NewerMinorWithUnknownSectionsIsRead) {
     std::vector<Section> sections = sections_of(good);
-    sections.insert(sections.begin() + 2, {11, 1, 0, 3, {1, 2, 3}});
+    sections.insert(sections.begin() + 2, {13, 1, 0, 3, {1, 2, 3}});
     sections.push_back({0xFFFF, 9, 200, 1u << 24, {4, 5}});
     const Bytes file = Edit(with_sections(good, sections)).u16(at::minor, 5).sealed();
     Sector sector;
@@ -296,10 +296,10 @@ TEST(SectorReaderLimits, ExtremesAreRead) {
 }
 
 TEST(SectionNames, AreThoseOfTheSpecification) {
-    constexpr std::array<std::string_view, 12> names = {
-        "unknown",        "bake",        "positions",  "sky visibility",
-        "transfer",       "grid",        "statistics", "static irradiance",
-        "local transfer", "convergence", "interiors",  "unknown"};
+    constexpr std::array<std::string_view, 14> names = {
+        "unknown",   "bake",         "positions",         "sky visibility", "transfer",
+        "grid",      "statistics",   "static irradiance", "local transfer", "convergence",
+        "interiors", "light groups", "quality",           "unknown"};
     for (std::uint16_t kind = 0; kind < names.size(); ++kind)
         EXPECT_EQ(name_of_section(kind), names[kind]);
 }

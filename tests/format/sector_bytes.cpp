@@ -135,6 +135,10 @@ Bytes golden_bytes_1_2() {
     return write_sector(golden_sector_1_2());
 }
 
+Bytes golden_bytes_1_3() {
+    return write_sector(golden_sector_1_3());
+}
+
 Bytes read_test_file(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -78,6 +78,7 @@ class Edit {
 [[nodiscard]] Bytes golden_bytes();
 [[nodiscard]] Bytes golden_bytes_1_1();
 [[nodiscard]] Bytes golden_bytes_1_2();
+[[nodiscard]] Bytes golden_bytes_1_3();
 
 // A whole file from disk; empty when it cannot be read.
 [[nodiscard]] Bytes read_test_file(const std::string& path);

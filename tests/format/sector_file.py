@@ -10,8 +10,13 @@ SINCE_MINOR = {
     (9, 1): 1,
     (10, 1): 2,
     (8, 2): 2,
+    (8, 3): 3,
+    (11, 1): 3,
+    (12, 1): 3,
 }  # of (kind, version), for the sections that may be missing
 RAW, ZSTD, FILTERED = 0, 1, 2
+CODECS = {(8, 2): (FILTERED,), (8, 3): (RAW, FILTERED)}  # of (kind, version); of all others RAW and ZSTD
+MOST_SOURCES = {1: 255, 2: 255, 3: 2295}  # of each version of local transfer
 
 
 def xxh64(data):
@@ -156,9 +161,10 @@ def read_static_irradiance(section, probes):
 
 
 def local_transfer_layout(section, probes):
-    """The source count, the mask bytes and the pair count, and where the receivers, the masks and the codes begin."""
+    """The source count, the mask bytes and the pair count, and where the receivers, the masks and the codes begin. The most
+    sources depend on the version: decode_section looks at them."""
     source_count, mask_bytes, pair_count, reserved = struct.unpack_from("<HHIQ", section)
-    assert source_count <= 255 and mask_bytes == (16 if source_count <= 128 else 32) and reserved == 0
+    assert mask_bytes == 16 * max(1, (source_count + 127) // 128) and reserved == 0
     receivers_at = next_16(16 + 4 * source_count)
     masks_at = next_16(receivers_at + 8 * probes)
     return source_count, mask_bytes, pair_count, receivers_at, masks_at, masks_at + mask_bytes * probes
@@ -257,6 +263,42 @@ def read_interiors(section, probes):
     return interiors
 
 
+def read_light_groups(section, probes):
+    """The names of the groups, and for each probe its static irradiance of each group."""
+    group_count, *reserved = struct.unpack_from("<H14B", section)
+    assert 1 <= group_count <= 8 and not any(reserved)
+    codes_at = 16 + 64 * group_count
+    assert len(section) == codes_at + 25 * probes * group_count
+    names = [section[at : at + 64].rstrip(b"\0") for at in range(16, codes_at, 64)]
+    assert all(1 <= len(name) <= 63 and 0 not in name for name in names)
+    names = [name.decode("utf-8", "replace") for name in names]
+    irradiances = read_static_irradiance(section[codes_at:], probes * group_count)  # group by group
+    return names, [irradiances[p::probes] for p in range(probes)]
+
+
+def read_quality(section, probes):
+    """That of the sector, and that of each probe."""
+    buried_cells, blind_cells, group_count, *reserved = struct.unpack_from("<IIH6B", section)
+    assert group_count <= 8 and not any(reserved)
+    group_errors_at = 16 + 24 * probes
+    assert len(section) == group_errors_at + 4 * probes * group_count
+    names = ("transfer_error", "visibility_error", "static_error", "paths", "back_hits")
+    flag_names = ("budget_ended", "dark", "moved")
+    qualities = []
+    for p in range(probes):
+        *numbers, flags, r0, r1, r2 = struct.unpack_from("<3f2I4B", section, 16 + 24 * p)
+        assert all(math.isfinite(number) for number in numbers)
+        assert flags < 8 and (r0, r1, r2) == (0, 0, 0)
+        qualities.append(
+            dict(zip(names, numbers)) | {name: bool(flags >> bit & 1) for bit, name in enumerate(flag_names)}
+        )
+    group_errors = struct.unpack_from(f"<{probes * group_count}f", section, group_errors_at)  # group by group
+    assert all(math.isfinite(error) for error in group_errors)
+    for p in range(probes):
+        qualities[p]["group_errors"] = list(group_errors[p::probes])
+    return {"buried_cells": buried_cells, "blind_cells": blind_cells}, qualities
+
+
 def read_residuals(high, low, classes):
     """For each pair its 12 residuals, out of their groups (section 5.10, Order)."""
     weights = (1, -1, -1, -1, -2, -4, -4, -4, -2, -4, -4, -4)
@@ -283,7 +325,7 @@ def foretell(green, green_first, first):
 
 
 def unfilter(filtered, probes):
-    """The raw bytes of a local transfer of version 2."""
+    """The raw bytes of a filtered local transfer."""
     *_, pair_count, _, _, head = local_transfer_layout(filtered, probes)
     assert len(filtered) == head + 26 * pair_count
     shifts, classes, high, low = (
@@ -310,8 +352,9 @@ def unfilter(filtered, probes):
 
 def decode_section(kind, version, codec, stored, raw_bytes, probes):
     """The raw bytes of a section that is not ignored."""
-    assert codec in ((FILTERED,) if (kind, version) == (8, 2) else (RAW, ZSTD))
+    assert codec in CODECS.get((kind, version), (RAW, ZSTD))
     section = stored if codec == RAW else zstd_frame.decode(stored)
+    assert kind != 8 or struct.unpack_from("<H", section)[0] <= MOST_SOURCES[version]
     if codec == FILTERED:
         section = unfilter(section, probes)
     assert len(section) == raw_bytes
@@ -382,11 +425,15 @@ def read(data):
         per_probe["static_irradiance"] = read_static_irradiance(sections[7], probes)
     if 8 in sections:
         per_probe["local"] = read_local_transfer(sections[8], i, j, probes)
-    for name, values in per_probe.items():
-        for probe, value in zip(sector["probes"], values, strict=True):
-            probe[name] = value
     if 9 in sections:
         sector["convergence"] = read_convergence(sections[9])
     if 10 in sections:
         sector["interiors"] = read_interiors(sections[10], probes)
+    if 11 in sections:
+        sector["light_groups"], per_probe["light_groups"] = read_light_groups(sections[11], probes)
+    if 12 in sections:
+        sector["quality"], per_probe["quality"] = read_quality(sections[12], probes)
+    for name, values in per_probe.items():
+        for probe, value in zip(sector["probes"], values, strict=True):
+            probe[name] = value
     return sector

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 
 namespace drtv::test {
 namespace {
@@ -40,6 +41,44 @@ class Random {
   private:
     std::mt19937_64 engine_;
 };
+
+// With so many receivers, and pairs of most of them and most sources.
+LocalTransfer random_local_transfer(Random& random, std::size_t probe_count,
+                                    std::vector<LocalSource> sources) {
+    LocalTransfer local;
+    local.sources = std::move(sources);
+    local.receivers.resize(probe_count);
+    for (LocalSource& source : local.sources)
+        source.exponent = static_cast<std::int8_t>(random.between(-30, 31));
+    for (std::size_t p = 0; p < probe_count; ++p) {
+        local.receivers[p].exponent = static_cast<std::int8_t>(random.between(-96, 32));
+        add_pairs(local, p, {}, {});
+        std::size_t left = max_local_sources;
+        for (std::size_t s = 0; s < local.sources.size() && left > 0; ++s) {
+            if (random.between(0, 2) == 0)
+                continue;
+            LightCodes codes;
+            for (auto& channel : codes) {
+                channel[0] = static_cast<std::int16_t>(random.between(0, 28000));
+                for (std::size_t i = 1; i < sh_count; ++i)
+                    channel[i] = static_cast<std::int16_t>(random.between(-channel[0], channel[0]));
+            }
+            add_pairs(local, p, {s}, codes);
+            --left;
+        }
+    }
+    return local;
+}
+
+StaticIrradiance random_irradiance(Random& random) {
+    StaticIrradiance light;
+    for (auto& channel : light.codes) {
+        for (std::int16_t& q : channel)
+            q = static_cast<std::int16_t>(random.between(0, 32767));
+    }
+    light.exponent = static_cast<std::int8_t>(random.between(-64, 64));
+    return light;
+}
 
 }  // namespace
 
@@ -147,6 +186,35 @@ Sector golden_sector_1_2() {
     return sector;
 }
 
+Sector golden_sector_1_3() {
+    Sector sector = golden_sector_1_2();
+    constexpr LightCodes lamp = {{{32767, 8192, 4096, 2048}, {1024, 512, 256, 128}, {64, 32, 16, 8}}};
+    constexpr LightCodes window = {{{1, 2, 3, 4}, {5, 6, 7, 8}, {9, 10, 11, 12}}};
+    sector.light_groups = {{"lanterns", {{lamp, -3}, {{}, -64}, {window, 64}}},
+                           {"n\u00e4chtliche Fenster", {{window, 0}, {lamp, 1}, {{}, -64}}}};
+    Quality& quality = sector.quality.emplace();
+    quality.buried_cells = 100;
+    quality.blind_cells = 7;
+    quality.probes = {{0.0078125f, 0.00390625f, 0.125f, 2048, 5, false, false, false},
+                      {0.5f, 0, 0, 4096, 0, true, false, true},
+                      {0, 0, 0, 256, 256, false, true, false}};
+    quality.group_errors = {{0.25f, 0, 1.5f}, {0.0625f, 0.03125f, 0}};
+    // The last of them alone are used.
+    LocalTransfer& local = *sector.local_transfer;
+    std::vector<LocalSource> sources = neighbouring_sources(257);
+    sources.insert(sources.end(), local.sources.begin(), local.sources.end() - 1);
+    local.sources = std::move(sources);
+    const std::vector<LocalReceiver> receivers = std::exchange(local.receivers, {});
+    const std::vector<LightCodes> pairs = std::exchange(local.pairs, {});
+    local.receivers.resize(receivers.size());
+    add_pairs(local, 0, {0, 254}, pairs[0]);
+    add_pairs(local, 1, {255, 256, 257, 258}, pairs[1]);
+    add_pairs(local, 2, {258}, pairs[4]);
+    for (std::size_t p = 0; p < receivers.size(); ++p)
+        local.receivers[p].exponent = receivers[p].exponent;
+    return sector;
+}
+
 Interior box_interior(const std::array<std::int32_t, 3>& origin_units,
                       const std::array<std::uint16_t, 3>& low, const std::array<std::uint16_t, 3>& high) {
     Interior interior;
@@ -162,13 +230,20 @@ Interior box_interior(const std::array<std::int32_t, 3>& origin_units,
 
 std::vector<LocalSource> neighbouring_sources(std::size_t probes) {
     std::vector<LocalSource> sources;
-    for (std::size_t n = 0; n < probes; ++n)
-        sources.push_back({1, 0, static_cast<std::uint8_t>(n), 0});
+    constexpr std::array<std::array<std::int8_t, 2>, 8> around = {
+        {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+    for (std::size_t n = 0; n < probes; ++n) {
+        const auto [di, dj] = around[n / max_probes];
+        sources.push_back({di, dj, static_cast<std::uint8_t>(n % max_probes), 0});
+    }
     return sources;
 }
 
 void add_pairs(LocalTransfer& local, std::size_t p, const std::vector<std::size_t>& sources,
                const LightCodes& codes) {
+    // All receivers have masks of one size.
+    for (LocalReceiver& receiver : local.receivers)
+        receiver.sources.resize(local_mask_bytes(local.sources.size()));
     for (std::size_t s : sources) {
         local.receivers[p].sources[s >> 3] |= static_cast<std::uint8_t>(1u << (s & 7));
         local.pairs.push_back(codes);
@@ -236,43 +311,15 @@ Sector random_sector(std::uint32_t seed, std::size_t probe_count) {
 Sector random_sector_1_1(std::uint32_t seed, std::size_t probe_count) {
     Sector sector = random_sector(seed, probe_count);
     Random random(seed + 1000);
-    const auto code = [&](std::int64_t least, std::int64_t most) {
-        return static_cast<std::int16_t>(random.between(least, most));
-    };
-    for (std::size_t p = 0; p < probe_count; ++p) {
-        StaticIrradiance& light = sector.static_irradiance.emplace_back();
-        for (auto& channel : light.codes) {
-            for (std::int16_t& q : channel)
-                q = code(0, 32767);
-        }
-        light.exponent = static_cast<std::int8_t>(random.between(-64, 64));
-    }
-    LocalTransfer& local = sector.local_transfer.emplace();
+    for (std::size_t p = 0; p < probe_count; ++p)
+        sector.static_irradiance.push_back(random_irradiance(random));
     // Both widths of the masks, and the ends of both.
     constexpr std::array<std::int64_t, 6> source_counts = {0, 1, 127, 128, 129, 255};
-    local.sources =
+    std::vector<LocalSource> sources =
         neighbouring_sources(static_cast<std::size_t>(source_counts[seed % source_counts.size()]));
-    local.receivers.resize(probe_count);
-    for (LocalSource& source : local.sources) {
+    for (LocalSource& source : sources)
         source.dj = static_cast<std::int8_t>(random.between(-1, 1));
-        source.exponent = static_cast<std::int8_t>(random.between(-30, 31));
-    }
-    for (std::size_t p = 0; p < probe_count; ++p) {
-        local.receivers[p].exponent = static_cast<std::int8_t>(random.between(-96, 32));
-        std::size_t left = max_local_sources;
-        for (std::size_t s = 0; s < local.sources.size() && left > 0; ++s) {
-            if (random.between(0, 2) == 0)
-                continue;
-            LightCodes codes;
-            for (auto& channel : codes) {
-                channel[0] = code(0, 28000);
-                for (std::size_t i = 1; i < sh_count; ++i)
-                    channel[i] = code(-channel[0], channel[0]);
-            }
-            add_pairs(local, p, {s}, codes);
-            --left;
-        }
-    }
+    sector.local_transfer = random_local_transfer(random, probe_count, std::move(sources));
     const auto error = [&](float least) {
         return least + static_cast<float>(random.between(0, 1 << 20)) / (1 << 20);
     };
@@ -305,6 +352,40 @@ Sector random_sector_1_2(std::uint32_t seed, std::size_t probe_count) {
         interior.probe = p;
         sector.interiors.push_back(interior);
     }
+    return sector;
+}
+
+Sector random_sector_1_3(std::uint32_t seed, std::size_t probe_count) {
+    Sector sector = random_sector_1_2(seed, probe_count);
+    if (probe_count == 0)
+        return sector;
+    Random random(seed + 3000);
+    const std::int64_t groups = random.between(1, std::int64_t{max_light_groups});
+    Quality& quality = sector.quality.emplace();
+    quality.buried_cells = random.any<std::uint32_t>();
+    quality.blind_cells = random.any<std::uint32_t>();
+    const auto error = [&] { return static_cast<float>(random.between(0, 1 << 20)) / (1 << 16); };
+    const auto flag = [&] { return random.between(0, 1) == 1; };
+    for (std::size_t p = 0; p < probe_count; ++p) {
+        const auto paths = random.any<std::uint32_t>();
+        const auto back_hits = random.any<std::uint32_t>();
+        quality.probes.push_back({error(), error(), error(), paths, back_hits, flag(), flag(), flag()});
+    }
+    for (std::int64_t g = 0; g < groups; ++g) {
+        // In order, of 1 to 63 bytes.
+        LightGroup& group = sector.light_groups.emplace_back();
+        group.name = std::string(1, static_cast<char>('a' + g));
+        group.name.resize(static_cast<std::size_t>(random.between(1, std::int64_t{max_light_group_name})),
+                          '_');
+        std::vector<float>& errors = quality.group_errors.emplace_back();
+        for (std::size_t p = 0; p < probe_count; ++p) {
+            group.irradiance.push_back(random_irradiance(random));
+            errors.push_back(error());
+        }
+    }
+    constexpr std::array<std::size_t, 6> source_counts = {256, 257, 384, 385, 751, 2040};
+    const std::size_t sources = source_counts[seed % source_counts.size()];
+    sector.local_transfer = random_local_transfer(random, probe_count, neighbouring_sources(sources));
     return sector;
 }
 

@@ -11,6 +11,7 @@ import sector_file
 DRTV, GOLDEN_FOLDER = sys.argv[1:3]
 GOLDEN = os.path.join(GOLDEN_FOLDER, "format_1_0.drtv")
 GOLDEN_1_1 = os.path.join(GOLDEN_FOLDER, "format_1_1.drtv")
+GOLDEN_1_3 = os.path.join(GOLDEN_FOLDER, "format_1_3.drtv")
 USAGE, UNREADABLE, INVALID = 1, 2, 3
 
 

@@ -14,6 +14,7 @@ from tool_case import (
     DRTV,
     GOLDEN,
     GOLDEN_1_1,
+    GOLDEN_1_3,
     GOLDEN_FOLDER,
     INVALID,
     UNREADABLE,
@@ -387,10 +388,25 @@ class Strip(Tool):
         )
 
     def test_one_kind_alone_is_the_golden_file_of_that_kind(self):
-        for name in ("static_irradiance", "local_transfer", "convergence"):
-            out = self.path("out.drtv")
-            self.expect(0, "strip", GOLDEN_1_1, "--out", out, "--keep", name)
-            self.assertEqual(golden(out), golden(os.path.join(GOLDEN_FOLDER, f"format_1_1_{name}.drtv")))
+        for version, names in (
+            ("1_1", ("static_irradiance", "local_transfer", "convergence")),
+            ("1_3", ("light_groups", "local_transfer", "quality")),
+        ):
+            for name in names:
+                out = self.path("out.drtv")
+                whole, alone = (
+                    os.path.join(GOLDEN_FOLDER, f"format_{version}{rest}.drtv") for rest in ("", "_" + name)
+                )
+                self.expect(0, "strip", whole, "--out", out, "--keep", name)
+                self.assertEqual(golden(out), golden(alone))
+
+    def test_quality_is_dropped_unless_it_is_asked_for(self):
+        out = self.path("out.drtv")
+        for arguments, kept in (([], False), (["--keep", "all"], True)):
+            self.expect(0, "strip", GOLDEN_1_3, "--out", out, *arguments)
+            dumped = json.loads(self.expect(0, "dump", out, "--json"))
+            self.assertEqual("quality" in dumped, kept)
+            self.assertEqual(dumped["light_groups"], ["lanterns", "nächtliche Fenster"])
 
     def test_compressed_and_back_are_the_same_bytes(self):
         packed, raw = self.path("packed.drtv"), self.path("raw.drtv")
@@ -642,6 +658,18 @@ class Show(Tool):
         for line in lines:
             self.assertIn(line, stdout)
             self.assertNotIn(line.split("  ")[0], before)
+
+    def test_info_tells_of_light_groups_and_quality(self):
+        stdout = self.expect(0, "info", GOLDEN_1_3)
+        for line in (
+            "light group     lanterns, up to 6.75561e+15 (E/pi)\n",
+            "quality         1 dark, 1 moved out of a solid, 1 short of the error asked; "
+            "100 cells in solids, 7 that see no probe\n",
+            "  transfer           0.00781, 0.5, 0.5\n",
+            "  group lanterns     0.25, 1.5, 1.5\n",
+            "  group nächtliche Fenster 0.0312, 0.0625, 0.0625\n",
+        ):
+            self.assertIn(line, stdout)
 
     def test_broken_file_exits_3_with_the_reason_on_stderr(self):
         path = self.broken()

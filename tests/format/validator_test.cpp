@@ -48,6 +48,10 @@ Bytes golden_1_2_with(const std::function<void(Sector&)>& change) {
     return changed(golden_sector_1_2(), change);
 }
 
+Bytes golden_1_3_with(const std::function<void(Sector&)>& change) {
+    return changed(golden_sector_1_3(), change);
+}
+
 // Seven probes, each a source for all others; towards a probe of a smaller index five times as much light as
 // back.
 Bytes one_way_light() {
@@ -265,6 +269,24 @@ const std::vector<Case> cases = {
      [] { return golden_1_1_with([](Sector& s) { s.convergence = {0, 3, 2, 1, 0, 0, 0, 0, 0, 0}; }); },
      "CONVERGENCE_RANGE at 5240, convergence.error_p95: 2.000000 is less than the median\n"
      "CONVERGENCE_RANGE at 5244, convergence.error_max: 1.000000 is less than the 95th percentile"},
+    {"LightGroupsOutOfOrder",
+     [] { return golden_1_3_with([](Sector& s) { s.light_groups[1].name = "lantern"; }); },
+     "LIGHT_GROUP_NAME at 6976, light_groups[1]: does not stand behind that of light group 0 in order"},
+    {"LightGroupNameIsNoText",
+     [] { return golden_1_3_with([](Sector& s) { s.light_groups[1].name = "n\xED\xA0\x80"; }); },
+     "LIGHT_GROUP_NAME at 6976, light_groups[1]: is no UTF-8"},
+    {"LightGroupNegative",
+     [] { return golden_1_3_with([](Sector& s) { s.light_groups[1].irradiance[1].codes[2][3] = -5; }); },
+     "STATIC_IRRADIANCE_RANGE at 7158, probe[1].light_groups[1].b[3]: code -5 is negative"},
+    {"LightGroupExponent",
+     [] { return golden_1_3_with([](Sector& s) { s.light_groups[0].irradiance[2].exponent = 65; }); },
+     "STATIC_EXPONENT at 7186, probe[2].light_groups[0].exponent: 65 is not between -64 and 64"},
+    {"QualityErrorNegative",
+     [] { return golden_1_3_with([](Sector& s) { s.quality->probes[1].static_error = -0.5f; }); },
+     "CONVERGENCE_RANGE at 7248, probe[1].quality.static_error: -0.500000 is less than 0"},
+    {"QualityGroupErrorNegative",
+     [] { return golden_1_3_with([](Sector& s) { s.quality->group_errors[1][0] = -2; }); },
+     "CONVERGENCE_RANGE at 7300, probe[0].quality.group_errors[1]: -2.000000 is less than 0"},
     {"MostPathsFewerThanLeast",
      [] { return golden_1_1_with([](Sector& s) { s.convergence->paths_most = 255; }); },
      "CONVERGENCE_RANGE at 5252, convergence.paths_most: 255 is less than the least"},

@@ -72,14 +72,25 @@ void expect_equal_interiors(const SectorView& view, const std::vector<Interior>&
     }
 }
 
+void expect_equal_groups(const SectorView& view, const std::vector<LightGroup>& groups) {
+    ASSERT_EQ(view.light_group_names.size(), groups.size());
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        EXPECT_EQ(light_group_name(view, g), groups[g].name);
+        for (std::size_t p = 0; p < view.probe_count; ++p)
+            EXPECT_EQ(light_group_irradiance_of(view, g, p), groups[g].irradiance[p]);
+    }
+}
+
 TEST(SectorView, ShowsWhatAReaderReads) {
     for (std::uint32_t seed = 0; seed < 12; ++seed) {
-        const Sector sector = random_sector_1_2(seed, 1 + 23 * seed);
+        const Sector sector =
+            seed % 2 == 0 ? random_sector_1_2(seed, 1 + 23 * seed) : random_sector_1_3(seed, 1 + 23 * seed);
         const Bytes file = write_sector(sector);
         const SectorView view = open(file);
         expect_equal(view, sector);
         expect_equal_local(view, *sector.local_transfer);
         expect_equal_interiors(view, sector.interiors);
+        expect_equal_groups(view, sector.light_groups);
     }
 }
 
@@ -118,7 +129,7 @@ TEST(SectorView, RefusesWhatItCannotUseInPlace) {
 }
 
 TEST(SectorViewLookup, FindsProbesPositionsAndPairsAsAReaderDoes) {
-    const Sector sector = random_sector_1_2(4, 40);
+    const Sector sector = random_sector_1_3(4, 40);
     const Bytes file = write_sector(sector);
     const SectorView view = open(file);
     const LocalTransfer& local = *sector.local_transfer;
@@ -170,7 +181,7 @@ TEST(SectorViewLookup, InteriorsHoldWhatIsInside) {
 
 TEST(UnpackSector, GivesTheRawFile) {
     for (const Sector& sector : {golden_sector(), golden_sector_1_1(), golden_sector_1_2(),
-                                 random_sector_1_2(9, 70), random_sector(2, 0)}) {
+                                 random_sector_1_2(9, 70), random_sector_1_3(5, 9), random_sector(2, 0)}) {
         Bytes raw = {1, 2, 3};
         ASSERT_TRUE(unpack_sector(write_sector(sector, {Codec::zstd}), raw).ok());
         EXPECT_EQ(raw, write_sector(sector));

@@ -48,7 +48,8 @@ inline constexpr float sh_y1 = 0.488603f;
 inline constexpr std::size_t max_probes = 255;  // a sector's; index 255 means "no probe"
 inline constexpr std::uint8_t no_probe = 255;
 
-inline constexpr std::size_t max_local_sources = 128;  // that one probe takes light from
+inline constexpr std::size_t max_local_sources = 128;              // that one probe takes light from
+inline constexpr std::size_t max_sector_sources = 9 * max_probes;  // of a sector: all its neighbours' too
 
 inline constexpr std::size_t grid_size = 16;  // cells along each axis
 inline constexpr std::size_t grid_cell_count = grid_size * grid_size * grid_size;

@@ -139,6 +139,11 @@ inline constexpr Error local_source_duplicate("LOCAL_SOURCE_DUPLICATE",
                                               index,
                                               "two local sources are the same probe");
 
+inline constexpr Error light_group_name(
+    "LIGHT_GROUP_NAME",
+    index,
+    "the name of a light group is no UTF-8, or does not stand behind the name before it in order");
+
 inline constexpr Error neighbour_source(
     "NEIGHBOUR_SOURCE", borders, "a local source is a probe that the neighbouring sector does not have");
 inline constexpr Warning neighbour_sections(

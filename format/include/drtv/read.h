@@ -46,13 +46,15 @@ enum class SectionKind : std::uint16_t {
     static_irradiance = 7,  // this and the following: format 1.1, optional
     local_transfer = 8,
     convergence = 9,
-    interiors = 10,  // format 1.2, optional
+    interiors = 10,     // format 1.2, optional
+    light_groups = 11,  // this and the following: format 1.3, optional
+    quality = 12,
 };
 
 enum class Codec : std::uint8_t {
     raw = 0,
     zstd = 1,
-    filtered = 2,  // zstd behind a filter (SPEC.md, section 5.10): local transfer of section version 2
+    filtered = 2,  // zstd behind a filter (SPEC.md, section 5.10): local transfer of section version 2 or 3
 };
 
 // One line of the table of sections, as it stands in the file.

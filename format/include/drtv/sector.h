@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -96,21 +97,28 @@ struct LocalSource {
 // begin.
 struct LocalReceiver {
     std::uint32_t first_pair = 0;
-    std::int8_t exponent = 0;                // its part of the scale of its pairs
-    std::array<std::uint8_t, 32> sources{};  // bit s & 7 of byte s >> 3: source s has a pair
+    std::int8_t exponent = 0;  // its part of the scale of its pairs
+    // Bit s & 7 of byte s >> 3: source s has a pair. Up to local_mask_bytes; bytes that are not there are 0.
+    std::vector<std::uint8_t> sources;
 
     bool operator==(const LocalReceiver&) const = default;
 };
 
-// Whether the receiver has a pair with source `s`. REQUIRES: s < 256.
-[[nodiscard]] constexpr bool has_pair(const LocalReceiver& receiver, std::size_t s) {
-    return (receiver.sources[s >> 3] >> (s & 7) & 1) != 0;
+// Bytes of a receiver's mask, for that many sources.
+[[nodiscard]] constexpr std::size_t local_mask_bytes(std::size_t sources) {
+    constexpr std::size_t step = 128;  // sources for 16 bytes
+    return sources <= step ? step / 8 : (sources + step - 1) / step * (step / 8);
+}
+
+// Whether the receiver has a pair with source `s` of its sector.
+[[nodiscard]] inline bool has_pair(const LocalReceiver& receiver, std::size_t s) {
+    return s >> 3 < receiver.sources.size() && (receiver.sources[s >> 3] >> (s & 7) & 1) != 0;
 }
 
 // Light that a local light at a source's place sends to a receiver by bounce (SPEC.md, section 5.8). Pair n
 // of receiver p and source s: R_c[i] = 2^(receiver exponent + source exponent) * code / 32767.
 struct LocalTransfer {
-    std::vector<LocalSource> sources;      // at most 255
+    std::vector<LocalSource> sources;      // at most max_sector_sources
     std::vector<LocalReceiver> receivers;  // one a probe
     std::vector<LightCodes> pairs;         // [c][i]; a receiver's in the order of its sources
 
@@ -144,6 +152,38 @@ struct Interior {
     bool operator==(const Interior&) const = default;
 };
 
+// Static irradiance of lights that a game switches and colours together: one a probe. It is in no other.
+struct LightGroup {
+    std::string name;  // UTF-8, 1 to max_light_group_name bytes
+    std::vector<StaticIrradiance> irradiance;
+
+    bool operator==(const LightGroup&) const = default;
+};
+
+// What is known of a probe's light (SPEC.md, section 5.13). Errors are standard errors over the mean of the
+// same numbers, each on its own scale.
+struct ProbeQuality {
+    float transfer_error = 0;  // of the bounce, relit by a sky of radiance 1
+    float visibility_error = 0;
+    float static_error = 0;  // of what is in no group
+    std::uint32_t paths = 0;
+    std::uint32_t back_hits = 0;  // rays that ended at the back of a one-sided surface
+    bool budget_ended = false;    // paths were used up before the error that was asked for was reached
+    bool dark = false;            // no light of sky or map reaches it
+    bool moved = false;           // out of a solid
+
+    bool operator==(const ProbeQuality&) const = default;
+};
+
+struct Quality {
+    std::uint32_t buried_cells = 0;                // of the grid: in solids or under ground
+    std::uint32_t blind_cells = 0;                 // of the others: that do not see the probe they name
+    std::vector<ProbeQuality> probes;              // one a probe
+    std::vector<std::vector<float>> group_errors;  // [light group][probe], of the groups when it was baked
+
+    bool operator==(const Quality&) const = default;
+};
+
 struct Sector {
     std::int32_t i = 0, j = 0;        // world square [64 i, 64 i + 64) x [64 j, 64 j + 64)
     std::int32_t z_origin_units = 0;  // height of position z = 0, 2^-10 m
@@ -158,6 +198,9 @@ struct Sector {
     std::optional<Convergence> convergence;
     // Of format 1.2, optional:
     std::vector<Interior> interiors;  // at most max_interiors
+    // Of format 1.3, each optional:
+    std::vector<LightGroup> light_groups;  // at most max_light_groups, by name
+    std::optional<Quality> quality;
 
     bool operator==(const Sector&) const = default;
 };
@@ -167,6 +210,8 @@ inline constexpr std::int32_t max_sector_coordinate = 1 << 14;
 inline constexpr std::uint8_t max_z_shift = 10;
 inline constexpr std::int32_t max_z_origin_units = 1 << 30;       // of the sector and of the grid
 inline constexpr std::uint32_t max_cell_height_units = 1u << 24;  // so that 16 cells fit 32 bits too
+inline constexpr std::size_t max_light_groups = 8;
+inline constexpr std::size_t max_light_group_name = 63;  // bytes
 inline constexpr std::size_t max_interiors = 1024;
 inline constexpr std::size_t max_interior_vertices = 1u << 16;  // of one interior
 inline constexpr std::size_t max_interiors_vertices = 1u

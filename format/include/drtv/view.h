@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace drtv {
@@ -39,6 +40,7 @@ struct StoredInterior {
     std::array<std::uint8_t, 2> reserved;
     std::uint32_t first_vertex, vertex_count, first_triangle, triangle_count;
 };
+using StoredName = std::array<char, max_light_group_name + 1>;  // zeros behind it
 static_assert(sizeof(StoredPosition) == 8 && sizeof(StoredGrid) == 4112 && sizeof(StoredReceiver) == 8 &&
               sizeof(StoredInterior) == 32);
 
@@ -65,6 +67,9 @@ struct SectorView {
     std::span<const std::array<std::uint16_t, 3>> interior_vertices;  // all interiors'
     std::span<const std::array<std::uint16_t, 3>>
         interior_triangles;  // indices within their interior's vertices
+    std::span<const StoredName> light_group_names;
+    std::span<const LightCodes> light_group_irradiance;  // group by group, one a probe: [c][b]
+    std::span<const std::int8_t> light_group_exponents;  // likewise
 };
 
 // The sector that lies in `bytes`. Checks all that read_sector checks, untrusted bytes are safe. Allocates
@@ -88,6 +93,15 @@ ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::u
 
 // REQUIRES: the sector has static irradiance, p < sector.probe_count.
 [[nodiscard]] StaticIrradiance static_irradiance_of(const SectorView& sector, std::size_t p);
+
+// The group's name, by its index in light_group_names; it points into the file's bytes. REQUIRES: g <
+// sector.light_group_names.size().
+[[nodiscard]] std::string_view light_group_name(const SectorView& sector, std::size_t g);
+
+// What the group brings to a probe. REQUIRES: g < sector.light_group_names.size(), p < sector.probe_count.
+[[nodiscard]] StaticIrradiance light_group_irradiance_of(const SectorView& sector,
+                                                         std::size_t g,
+                                                         std::size_t p);
 
 // What a light at source `s` (an index of local_sources) sends to probe `p` by bounce. Codes are null where
 // the two are no pair: then the light adds nothing. REQUIRES: the sector has local transfer, p <

@@ -17,9 +17,11 @@ struct WriteOptions {
 // The bytes of the file, of the least minor version that has all of the sector's sections. Values
 // are written as they are: what is not a valid sector gives a file that is not valid.
 // REQUIRES: at most 255 probes, |i| and |j| <= max_sector_coordinate, |z_origin_units| <= max_z_origin_units,
-// z_shift <= max_z_shift; static irradiance empty or one a probe; local receivers one a probe, at most 255
-// local sources; at most 1024 interiors, each of at most 65536 vertices, all of at most 2^21 vertices and
-// 2^18 triangles.
+// z_shift <= max_z_shift; static irradiance empty or one a probe; local receivers one a probe, at most
+// max_sector_sources local sources; at most max_light_groups light
+// groups with names of 1 to max_light_group_name bytes other than 0, one irradiance a probe each; quality of
+// each probe, and of each of at most max_light_groups groups its error at each probe; at most 1024 interiors,
+// each of at most 65536 vertices, all of at most 2^21 vertices and 2^18 triangles.
 [[nodiscard]] std::vector<std::uint8_t> write_sector(const Sector& sector, const WriteOptions& options = {});
 
 }  // namespace drtv

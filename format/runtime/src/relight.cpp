@@ -54,11 +54,11 @@ BasisColours relight(const TransferCodes& transfer_codes,
     return colours;
 }
 
-void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light) {
+void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light, const Float3& tint) {
     const float scale = scale_of_exponent(light.exponent);
     for (std::size_t b = 0; b < basis_count; ++b) {
         for (std::size_t c = 0; c < channel_count; ++c)
-            colours[b][c] += decode_fixed(light.codes[c][b], scale);
+            colours[b][c] += tint[c] * decode_fixed(light.codes[c][b], scale);
     }
 }
 

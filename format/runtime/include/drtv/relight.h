@@ -28,8 +28,11 @@ using BasisColours = std::array<Float3, basis_count>;
                                    const DistantLight& sky,
                                    const DistantLight& sun);
 
-// Adds the light of the map's own lights, which no time of day changes.
-void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light);
+// Adds the light of the map's own lights, which no time of day changes; of a light group, times what the game
+// makes of it at the moment.
+void add_static_irradiance(BasisColours& colours,
+                           const StaticIrradiance& light,
+                           const Float3& tint = {1, 1, 1});
 
 // What a light at a local source adds to the ambient light at a unit normal, by bounce: its direct light is
 // the game's. `pair` and `scale` are what find_local_pair gives, `intensity` is the light's in W/sr.
