@@ -1,9 +1,9 @@
 // How far an estimate has come, from what blocks of its own samples say.
 #pragma once
 
-#include <drtv/conventions.h>
-
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -20,12 +20,40 @@ inline constexpr double block_correction = 0.75;
 // 1, or W/m2.
 inline constexpr double least_mean = 0.02;
 
-using BlockMeans =
-    std::array<std::array<std::array<double, basis_count>, channel_count>, block_count>;  // [block][c][b]
+// Of so many numbers that are estimated together, for instance channels and directions.
+template <std::size_t count>
+using BlockMeans = std::array<std::array<double, count>, block_count>;
 
-// Standard error of the mean over blocks: root mean square over channels and directions, over the mean or
-// `least_mean`.
-[[nodiscard]] double relative_error(const BlockMeans& means);
+// What blocks say of their mean.
+struct ErrorOfMean {
+    double error = 0;  // standard error, root mean square over the numbers
+    double mean = 0;   // over the numbers
+
+    // Over the mean or `least_mean`.
+    [[nodiscard]] double over_mean() const { return error / (mean > least_mean ? mean : least_mean); }
+    // Over the mean, where `exact` more is known without error; 0 where that is none.
+    [[nodiscard]] double on_own_scale(double exact = 0) const {
+        return mean + exact > 0 ? error / (mean + exact) : 0;
+    }
+};
+
+template <std::size_t count>
+[[nodiscard]] ErrorOfMean error_of_mean(const BlockMeans<count>& means) {
+    double variance = 0;
+    double total = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+        double sum = 0;
+        double squares = 0;
+        for (const auto& block : means) {
+            sum += block[n];
+            squares += block[n] * block[n];
+        }
+        const double mean = sum / block_count;
+        total += mean;
+        variance += std::max(0.0, squares / block_count - mean * mean) / (block_count - 1);
+    }
+    return {block_correction * std::sqrt(variance / count), total / count};
+}
 
 // Median, 95th percentile and maximum; zeros of nothing.
 struct ErrorSummary {

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace drtv::bake {
 namespace {
@@ -21,8 +23,16 @@ constexpr std::uint32_t min_paths = 1024;
 
 class Integrator {
   public:
-    Integrator(const ProbeTask& task, const StaticLights& lights)
-        : task_(task), static_light_(task, lights, sums_) {}
+    Integrator(const ProbeTask& task, const StaticLights& lights) : task_(task), lights_(lights) {
+        light_of_set_.assign(lights.sets().size(), no_light);
+        for (std::size_t set = 0; set < lights.sets().size(); ++set) {
+            StaticLight light(task, lights.sets()[set]);
+            if (light.idle())
+                continue;
+            light_of_set_[set] = static_lights_.size();
+            static_lights_.push_back(std::move(light));
+        }
+    }
 
     ProbeLight run() {
         const std::uint32_t budget = task_.samples.count();
@@ -30,24 +40,53 @@ class Integrator {
         run_to(wanted > 0 ? std::min(min_paths, budget) : budget);
         while (wanted > 0 && error() > wanted && 2 * std::uint64_t{light_.paths} <= budget) {
             sums_.pair_blocks();
+            for (StaticLight& light : static_lights_)
+                light.sums().pair_blocks();
             run_to(2 * light_.paths);
         }
         light_.error = static_cast<float>(error());
-        if (static_light_.present())
-            static_light_.add_direct();
-        light_.shadow_rays = static_light_.shadow_rays();
+        light_.budget_ended = wanted > 0 && error() > wanted;
         sums_.store(light_);
-        return light_;
+        store_static_light();
+        return std::move(light_);
     }
 
   private:
-    [[nodiscard]] double error() const { return sums_.error(light_.paths, static_light_.present()); }
+    static constexpr std::size_t no_light = SIZE_MAX;
+
+    [[nodiscard]] double error() const {
+        double largest = sums_.error().over_mean();
+        for (const StaticLight& light : static_lights_)
+            largest = std::max(largest, light.sums().error(light_.paths).over_mean());
+        return largest;
+    }
+
+    void store_static_light() {
+        for (std::size_t set = 0; set < light_of_set_.size(); ++set) {
+            if (light_of_set_[set] == no_light)
+                continue;
+            StaticLight& lit = static_lights_[light_of_set_[set]];
+            lit.add_direct();
+            light_.shadow_rays += lit.shadow_rays();
+            StaticLightOfProbe stored = lit.sums().light_of(light_.paths);
+            stored.set = set;
+            if (set > 0) {
+                light_.groups.push_back(stored);
+                continue;
+            }
+            light_.static_irradiance = stored.irradiance;
+            light_.static_error = stored.error;
+        }
+    }
 
     // Shoots the paths up to `count`, which then make up the blocks.
     void run_to(std::uint32_t count) {
         const auto paths = task_.samples.side_by_side().subspan(light_.paths, count - light_.paths);
         for (const std::uint32_t n : paths) {
-            sums_.choose_block(std::size_t{n} * block_count / count);
+            const std::size_t block = std::size_t{n} * block_count / count;
+            sums_.choose_block(block);
+            for (StaticLight& light : static_lights_)
+                light.sums().choose_block(block);
             trace_path(n);
         }
         light_.paths = count;
@@ -66,7 +105,8 @@ class Integrator {
     void trace_path(std::uint32_t n) {
         Path path = first_of(n);
         sums_.add_direction(path.weights, path.half);
-        static_light_.add_drawn_at_probe(n);
+        for (StaticLight& light : static_lights_)
+            light.add_drawn_at_probe(n);
         for (; trace_segment(path); ++path.bounce) {
         }
     }
@@ -84,7 +124,7 @@ class Integrator {
             return false;
         }
         const bool last = path.bounce == task_.settings.bounces;
-        if (last && !static_light_.present())
+        if (last && static_lights_.empty())
             return false;
         path.footprint_m += hit->distance_m * (path.bounce == 0 ? first_footprint : later_footprint);
         const trace::Surface surface = task_.scene.surface(*hit, path.footprint_m);
@@ -92,15 +132,22 @@ class Integrator {
             count_back_hit(task_.scene.object_index(hit->instance));
             return false;
         }
-        if (static_light_.present() && surface.emission != glm::vec3(0))
-            static_light_.add_met(path, *hit, surface.emission);
+        if (surface.emission != glm::vec3(0))
+            add_met(path, *hit, surface.emission);
         if (last)
             return false;
         if (transmitted_share(surface) > 0)
             watch(path, end_of_surface(path.ray, *hit));
-        if (static_light_.present())
-            static_light_.add_at_surface(path, *hit, surface);
+        for (StaticLight& light : static_lights_)
+            light.add_at_surface(path, *hit, surface);
         return go_on(path, *hit, surface);
+    }
+
+    // Emission counts in the object's own set.
+    void add_met(const Path& path, const trace::Hit& hit, const glm::vec3& emission) {
+        const std::size_t light = light_of_set_[lights_.set_of(task_.scene.object_index(hit.instance))];
+        if (light != no_light)
+            static_lights_[light].add_met(path, hit, emission);
     }
 
     bool go_on(Path& path, const trace::Hit& hit, const trace::Surface& surface) {
@@ -169,8 +216,10 @@ class Integrator {
 
     const ProbeTask& task_;
     ProbeSums sums_;
-    StaticLight static_light_;
-    int misses_ = 0;  // that were looked at twice
+    const StaticLights& lights_;
+    std::vector<StaticLight> static_lights_;  // of the sets that are not idle
+    std::vector<std::size_t> light_of_set_;   // its index in static_lights_, or no_light
+    int misses_ = 0;                          // that were looked at twice
     ProbeLight light_;
 };
 

@@ -16,19 +16,19 @@ glm::length_t longest_axis(const glm::vec3& extent) {
 
 }  // namespace
 
-LightTree::LightTree(const StaticLights& lights, const glm::vec3& centre, float reach_m) {
+LightTree::LightTree(const LightSet& lights, const glm::vec3& centre, float reach_m) {
     std::vector<Node> leaves;
-    for (const PointLight& point : lights.points()) {
-        if (glm::length(point.position - centre) > reach_m)
+    for (const PointLight* point : lights.points) {
+        if (glm::length(point->position - centre) > reach_m)
             continue;
-        points_.push_back(&point);
-        leaves.push_back({point.position, 0, luminance(point.intensity), -1, -1, -1, {&point, nullptr}});
+        points_.push_back(point);
+        leaves.push_back({point->position, 0, luminance(point->intensity), -1, -1, -1, {point, nullptr}});
     }
-    for (const EmissiveObject& emissive : lights.emissive()) {
-        if (glm::length(emissive.centre - centre) - emissive.radius_m > reach_m)
+    for (const EmissiveObject* emissive : lights.emissive) {
+        if (glm::length(emissive->centre - centre) - emissive->radius_m > reach_m)
             continue;
         leaves.push_back(
-            {emissive.centre, emissive.radius_m, emissive.power, -1, -1, -1, {nullptr, &emissive}});
+            {emissive->centre, emissive->radius_m, emissive->power, -1, -1, -1, {nullptr, emissive}});
     }
     if (leaves.empty())
         return;

@@ -24,7 +24,7 @@ struct Roulette {
 // the square of the distance (Conty and Kulla 2018, without their cones). A function of these lights alone.
 class LightTree {
   public:
-    LightTree(const StaticLights& lights, const glm::vec3& centre, float reach_m);
+    LightTree(const LightSet& lights, const glm::vec3& centre, float reach_m);
 
     // One light: points first, then emissive objects.
     struct Item {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace drtv::bake {
 namespace {
@@ -172,10 +173,13 @@ StaticLights::StaticLights(std::shared_ptr<const map::Map> map) : map_(std::move
     for (const map::Light& light : map_->lights) {
         if (!shines(light))
             continue;
-        if (light.kind == map::LightKind::directional)
+        if (light.kind == map::LightKind::directional) {
             suns_.push_back({-light.direction, radiometric(light.colour * light.intensity)});
-        else
+            group_of_sun_.push_back(light.light_group);
+        } else {
             points_.push_back(point_light(light));
+            group_of_point_.push_back(light.light_group);
+        }
     }
     const std::vector<std::size_t> triangles = emissive_triangles_of_meshes(*map_);
     for (std::uint32_t n = 0; n < map_->objects.size(); ++n) {
@@ -185,6 +189,26 @@ StaticLights::StaticLights(std::shared_ptr<const map::Map> map) : map_(std::move
         if (emissive.power > 0)
             emissive_.push_back(std::move(emissive));
     }
+    make_sets();
+}
+
+void StaticLights::make_sets() {
+    const std::vector<std::string>& names = map_->light_groups;
+    std::vector<std::uint32_t> by_name(names.size());
+    std::iota(by_name.begin(), by_name.end(), 0u);
+    std::ranges::sort(by_name, {}, [&](std::uint32_t group) { return names[group]; });
+    set_of_group_.resize(names.size());
+    sets_.resize(1);
+    for (const std::uint32_t group : by_name) {
+        set_of_group_[group] = sets_.size();
+        sets_.emplace_back().name = names[group];
+    }
+    for (std::size_t n = 0; n < points_.size(); ++n)
+        sets_[set_of_group(group_of_point_[n])].points.push_back(&points_[n]);
+    for (std::size_t n = 0; n < suns_.size(); ++n)
+        sets_[set_of_group(group_of_sun_[n])].suns.push_back(&suns_[n]);
+    for (const EmissiveObject& emissive : emissive_)
+        sets_[set_of(emissive.object)].emissive.push_back(&emissive);
 }
 
 }  // namespace drtv::bake

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace drtv::bake {
@@ -77,9 +78,19 @@ struct EmissiveObject {
 // In all objects of the map together.
 [[nodiscard]] std::size_t emissive_triangles(const map::Map& map);
 
+// Lights whose static irradiance is kept apart: a light group, or all that are in none.
+struct LightSet {
+    std::string name;  // empty: of no group
+    std::vector<const PointLight*> points;
+    std::vector<const Sun*> suns;
+    std::vector<const EmissiveObject*> emissive;  // in the map's order of objects
+};
+
 class StaticLights {
   public:
     explicit StaticLights(std::shared_ptr<const map::Map> map);
+    StaticLights(const StaticLights&) = delete;
+    StaticLights& operator=(const StaticLights&) = delete;
 
     [[nodiscard]] bool empty() const { return points_.empty() && suns_.empty() && emissive_.empty(); }
     [[nodiscard]] std::span<const PointLight> points() const { return points_; }
@@ -87,11 +98,28 @@ class StaticLights {
     [[nodiscard]] std::span<const EmissiveObject> emissive() const { return emissive_; }
     [[nodiscard]] const map::Map& map() const { return *map_; }
 
+    // First the lights of no group, which may be none, then the groups by name.
+    [[nodiscard]] std::span<const LightSet> sets() const { return sets_; }
+    // The set that an object of the map would shine with.
+    [[nodiscard]] std::size_t set_of(std::uint32_t object) const {
+        return set_of_group(map_->objects[object].light_group);
+    }
+
   private:
+    void make_sets();
+    [[nodiscard]] std::size_t set_of_group(std::uint32_t group) const {
+        return group == map::no_light_group ? 0 : set_of_group_[group];
+    }
+
     std::shared_ptr<const map::Map> map_;
     std::vector<PointLight> points_;
     std::vector<Sun> suns_;
     std::vector<EmissiveObject> emissive_;  // in the map's order of objects
+    // Of points_ and suns_: the number of their group in the map.
+    std::vector<std::uint32_t> group_of_point_;
+    std::vector<std::uint32_t> group_of_sun_;
+    std::vector<LightSet> sets_;
+    std::vector<std::size_t> set_of_group_;  // by number of the group in the map
 };
 
 }  // namespace drtv::bake

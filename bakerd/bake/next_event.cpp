@@ -53,12 +53,13 @@ std::optional<Incident> NextEvent::draw(const glm::vec3& from,
     if (!(triangle.both_sides ? cosine != 0 : cosine > 0))
         return std::nullopt;
 
-    const map::Object& object = lights_.map().objects[drawn.item.emissive->object];
-    const map::Primitive& primitive = lights_.map().meshes[object.mesh].primitives[triangle.primitive];
+    const map::Map& map = scene_.map();
+    const map::Object& object = map.objects[drawn.item.emissive->object];
+    const map::Primitive& primitive = map.meshes[object.mesh].primitives[triangle.primitive];
     const bool mirrored = glm::determinant(glm::mat3(object.world_from_object)) < 0;
     const float u_weight = mirrored ? weight_c : weight_b;
     const float v_weight = mirrored ? weight_b : weight_c;
-    const trace::TrianglePoint on_light{lights_.map(), primitive, triangle.triangle, u_weight, v_weight};
+    const trace::TrianglePoint on_light{map, primitive, triangle.triangle, u_weight, v_weight};
     if (!trace::is_there(on_light))
         return std::nullopt;
     Incident incident{direction, glm::vec3(0), point, distance_m, 0};

@@ -24,17 +24,17 @@ struct Incident {
     float density = 0;  // per steradian with which next event draws this direction; 0: no path could find it
 };
 
-// Of one probe: all lights within its reach, and shadows inside it.
+// Of one probe: the lights of a set within its reach, and shadows inside it.
 class NextEvent {
   public:
-    NextEvent(const trace::Scene& scene, const StaticLights& lights, const glm::vec3& probe, float reach_m)
+    NextEvent(const trace::Scene& scene, const LightSet& lights, const glm::vec3& probe, float reach_m)
         : scene_(scene), lights_(lights), tree_(lights, probe, reach_m), probe_(probe), reach_m_(reach_m) {}
 
-    [[nodiscard]] bool idle() const { return tree_.empty() && lights_.suns().empty(); }
+    [[nodiscard]] bool idle() const { return tree_.empty() && lights_.suns.empty(); }
     [[nodiscard]] bool has_drawn_lights() const { return !tree_.empty(); }
     [[nodiscard]] bool has_emissive() const { return tree_.has_emissive(); }
     [[nodiscard]] std::span<const PointLight* const> points() const { return tree_.points(); }
-    [[nodiscard]] std::span<const Sun> suns() const { return lights_.suns(); }
+    [[nodiscard]] std::span<const Sun* const> suns() const { return lights_.suns; }
 
     [[nodiscard]] Incident towards(const PointLight& light, const glm::vec3& from) const;
     [[nodiscard]] Incident towards(const Sun& sun, const glm::vec3& from) const;
@@ -55,7 +55,7 @@ class NextEvent {
 
   private:
     const trace::Scene& scene_;
-    const StaticLights& lights_;
+    const LightSet& lights_;
     const LightTree tree_;
     const glm::vec3 probe_;
     const float reach_m_;

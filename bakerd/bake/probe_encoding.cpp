@@ -3,9 +3,12 @@
 #include "bakerd/bake/convergence.h"
 #include "bakerd/bake/local_encoding.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <set>
 #include <utility>
-#include <vector>
 
 namespace drtv::bake {
 namespace {
@@ -24,9 +27,51 @@ StaticIrradiance encode_static(const BasisColours& irradiance) {
     return encoded;
 }
 
+bool is_lit(const StaticIrradiance& light) {
+    return light.codes != LightCodes{};
+}
+
+// Of the groups that shine on any of the probes.
+std::set<std::string> group_names(std::span<const BakedProbe> probes) {
+    std::set<std::string> names;
+    for (const BakedProbe& probe : probes) {
+        for (const BakedGroup& group : probe.groups) {
+            if (is_lit(group.irradiance))
+                names.insert(group.name);
+        }
+    }
+    return names;
+}
+
+tl::expected<void, std::string> store_groups(std::span<const BakedProbe> probes, Sector& sector) {
+    const std::set<std::string> names = group_names(probes);
+    if (names.size() > max_light_groups) {
+        return tl::unexpected(fmt::format(
+            "sector ({}, {}): {} light groups shine on its probes, a file holds at most {}: {}. Give "
+            "lamps that are switched together one light_group, or give them a range",
+            sector.i,
+            sector.j,
+            names.size(),
+            max_light_groups,
+            fmt::join(names, ", ")));
+    }
+    for (const std::string& name : names) {
+        LightGroup& group = sector.light_groups.emplace_back();
+        std::vector<float>& errors = sector.quality->group_errors.emplace_back();
+        group.name = name;
+        for (const BakedProbe& probe : probes) {
+            const auto of_probe = std::ranges::find(probe.groups, name, &BakedGroup::name);
+            const bool found = of_probe != probe.groups.end();
+            group.irradiance.push_back(found ? of_probe->irradiance : BakedGroup{}.irradiance);
+            errors.push_back(found ? of_probe->error : 0);
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
-BakedProbe encode_probe(const ProbeLight& light) {
+BakedProbe encode_probe(const ProbeLight& light, std::span<const LightSet> sets) {
     BakedProbe baked;
     for (std::size_t c = 0; c < channel_count; ++c) {
         for (std::size_t b = 0; b < basis_count; ++b) {
@@ -37,28 +82,45 @@ BakedProbe encode_probe(const ProbeLight& light) {
     for (std::size_t b = 0; b < basis_count; ++b)
         baked.sky_visibility[b] = encode_fixed(light.sky_visibility[b], sky_visibility_scale);
     baked.static_irradiance = encode_static(light.static_irradiance);
-    baked.counts = {light.paths,
-                    static_cast<std::uint32_t>(light.rays),
-                    static_cast<std::uint32_t>(light.shadow_rays),
-                    static_cast<std::uint32_t>(light.back_hits),
-                    light.error};
+    for (const StaticLightOfProbe& group : light.groups)
+        baked.groups.push_back({sets[group.set].name, encode_static(group.irradiance), group.error});
+    ProbeQuality& quality = baked.quality;
+    quality.transfer_error = light.transfer_error;
+    quality.visibility_error = light.visibility_error;
+    quality.static_error = light.static_error;
+    quality.paths = light.paths;
+    quality.back_hits = static_cast<std::uint32_t>(light.back_hits);
+    quality.budget_ended = light.budget_ended;
+    baked.counts = {
+        static_cast<std::uint32_t>(light.rays), static_cast<std::uint32_t>(light.shadow_rays), light.error};
     return baked;
 }
 
-void store_probes(std::span<const BakedProbe> probes, Sector& sector) {
+tl::expected<void, std::string> store_probes(std::span<const BakedProbe> probes, Sector& sector) {
     bool lit = false;
+    Quality& quality = sector.quality.emplace();
     for (std::size_t p = 0; p < probes.size(); ++p) {
         sector.probes[p].transfer = probes[p].transfer;
         sector.probes[p].sky_visibility = probes[p].sky_visibility;
         sector.statistics.rays += probes[p].counts.rays;
-        sector.statistics.back_hits += probes[p].counts.back_hits;
-        lit |= probes[p].static_irradiance.codes != LightCodes{};
+        sector.statistics.back_hits += probes[p].quality.back_hits;
+        quality.probes.push_back(probes[p].quality);
+        lit |= is_lit(probes[p].static_irradiance);
     }
     // The section is left out where no probe gets any static light.
-    if (!lit)
-        return;
-    for (const BakedProbe& probe : probes)
-        sector.static_irradiance.push_back(probe.static_irradiance);
+    for (std::size_t p = 0; lit && p < probes.size(); ++p)
+        sector.static_irradiance.push_back(probes[p].static_irradiance);
+    return store_groups(probes, sector);
+}
+
+bool is_dark(const Sector& sector, std::size_t probe) {
+    const Probe& light = sector.probes[probe];
+    if (light.sky_visibility != VisibilityCodes{} || light.transfer != TransferCodes{})
+        return false;
+    if (!sector.static_irradiance.empty() && is_lit(sector.static_irradiance[probe]))
+        return false;
+    return std::ranges::none_of(sector.light_groups,
+                                [probe](const LightGroup& group) { return is_lit(group.irradiance[probe]); });
 }
 
 Convergence convergence_of(std::span<const BakedProbe> probes, const Settings& settings) {
@@ -66,7 +128,7 @@ Convergence convergence_of(std::span<const BakedProbe> probes, const Settings& s
     convergence.error_asked = settings.error;
     std::vector<float> errors;
     for (const BakedProbe& probe : probes) {
-        const std::uint32_t paths = probe.counts.paths;
+        const std::uint32_t paths = probe.quality.paths;
         const std::uint32_t least = errors.empty() ? paths : convergence.paths_least;
         convergence.paths_least = std::min(least, paths);
         convergence.paths_most = std::max(convergence.paths_most, paths);

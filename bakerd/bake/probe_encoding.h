@@ -6,33 +6,51 @@
 
 #include <drtv/sector.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
 
 namespace drtv::bake {
 
 // A probe's part of its file's statistics.
 struct ProbeCounts {
-    std::uint32_t paths = 0;
     std::uint32_t rays = 0;
     std::uint32_t shadow_rays = 0;
-    std::uint32_t back_hits = 0;
     float error = 0;  // ProbeLight::error
 };
 
 inline constexpr int min_static_exponent = -64;
 
+// What a light group brings to a probe.
+struct BakedGroup {
+    std::string name;
+    StaticIrradiance irradiance{{}, min_static_exponent};
+    float error = 0;  // StaticLightOfProbe::error
+};
+
 struct BakedProbe {
     TransferCodes transfer{};
     VisibilityCodes sky_visibility{};
     StaticIrradiance static_irradiance{{}, min_static_exponent};
+    std::vector<BakedGroup> groups;  // by name
+    ProbeQuality quality;            // but for what other parts of the bake know: dark, moved
     ProbeCounts counts;
 };
 
-[[nodiscard]] BakedProbe encode_probe(const ProbeLight& light);
+// `sets` are those of the lights that it was integrated with.
+[[nodiscard]] BakedProbe encode_probe(const ProbeLight& light, std::span<const LightSet> sets);
 
-// Puts the probes' light, and what it cost, into a sector that has as many probes.
-void store_probes(std::span<const BakedProbe> probes, Sector& sector);
+// Puts the probes' light, what is known of it, and what it cost, into a sector that has as many probes. Fails
+// with a sentence where more light groups than a file holds shine on them.
+[[nodiscard]] tl::expected<void, std::string> store_probes(std::span<const BakedProbe> probes,
+                                                           Sector& sector);
+
+// Whether neither the sky nor any light of the map reaches the sector's probe.
+[[nodiscard]] bool is_dark(const Sector& sector, std::size_t probe);
 
 // REQUIRES: `sector` is of these probes.
 [[nodiscard]] Convergence convergence_of(std::span<const BakedProbe> probes, const Settings& settings);

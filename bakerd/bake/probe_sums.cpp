@@ -10,6 +10,9 @@ namespace {
 constexpr std::size_t upper = static_cast<std::size_t>(Half::upper);
 constexpr std::size_t lower = static_cast<std::size_t>(Half::lower);
 
+// Basis directions that see sky at all.
+constexpr std::size_t upward_count = 3;
+
 // The share of a cosine lobe around the basis direction that lies above the horizon, and below.
 std::array<double, 2> lobe_shares(std::size_t b) {
     const double above = (1 + static_cast<double>(transfer_basis[b][2])) / 2;
@@ -18,38 +21,15 @@ std::array<double, 2> lobe_shares(std::size_t b) {
 
 }  // namespace
 
-BasisWeights basis_weights(const glm::vec3& direction) {
-    BasisWeights weights{};
-    for (std::size_t b = 0; b < basis_count; ++b) {
-        const auto& axis = transfer_basis[b];
-        const float cosine = direction.x * axis[0] + direction.y * axis[1] + direction.z * axis[2];
-        weights[b] = std::max(0.0f, cosine);
-    }
-    return weights;
-}
-
-void ProbeSums::add(BasisSums& sums, const BasisWeights& weights, const glm::vec3& light) {
-    for (std::size_t c = 0; c < channel_count; ++c) {
-        const float colour = light[static_cast<glm::length_t>(c)];
-        for (std::size_t b = 0; b < basis_count; ++b)
-            sums[c][b] += static_cast<double>(weights[b] * colour);
-    }
-}
-
-void ProbeSums::add(BasisSums& sums, const BasisSums& more) {
-    for (std::size_t c = 0; c < channel_count; ++c) {
-        for (std::size_t b = 0; b < basis_count; ++b)
-            sums[c][b] += more[c][b];
-    }
-}
-
 void ProbeSums::Block::add(const Block& other) {
     for (const std::size_t half : {upper, lower}) {
         for (std::size_t b = 0; b < basis_count; ++b)
             weights[half][b] += other.weights[half][b];
-        ProbeSums::add(lit[half], other.lit[half]);
+        bake::add(bounced[half], other.bounced[half]);
     }
-    ProbeSums::add(static_light, other.static_light);
+    bake::add(seen, other.seen);
+    for (std::size_t b = 0; b < basis_count; ++b)
+        visible[b] += other.visible[b];
 }
 
 void ProbeSums::pair_blocks() {
@@ -72,8 +52,8 @@ void ProbeSums::add_sky(const BasisWeights& weights, Half half, const glm::vec3&
         return;
     const float share = throughput == glm::vec3(1) ? 1 : map::luminance(throughput);
     for (std::size_t b = 0; b < basis_count; ++b)
-        visible_[b] += static_cast<double>(weights[b] * share);
-    add(block_->lit[upper], weights, throughput);
+        block_->visible[b] += static_cast<double>(weights[b] * share);
+    bake::add(block_->seen, weights, throughput);
 }
 
 void ProbeSums::add_bounced_sky(const BasisWeights& weights,
@@ -90,37 +70,32 @@ void ProbeSums::add_bounced_sky(const BasisWeights& weights,
                 bounced_[h][c][b][i] += radiance * static_cast<double>(y[i]);
         }
     }
-    add(block_->lit[h], weights, throughput);
+    bake::add(block_->bounced[h], weights, throughput);
 }
 
-void ProbeSums::add_static(const BasisWeights& weights, const glm::vec3& light) {
-    add(block_->static_light, weights, light);
-}
-
-void ProbeSums::add_direct(const BasisWeights& weights, const glm::vec3& light) {
-    add(direct_, weights, light);
-}
-
-double ProbeSums::error(std::uint32_t paths, bool with_static_light) const {
-    BlockMeans relit{};
-    BlockMeans lit{};
-    const double paths_of_block = static_cast<double>(paths) / block_count;
+template <class Lit>
+ErrorOfMean ProbeSums::error_of(Lit lit) const {
+    BlockMeans<channel_count * basis_count> relit{};
     for (std::size_t k = 0; k < block_count; ++k) {
         const Block& block = blocks_[k];
         for (std::size_t b = 0; b < basis_count; ++b) {
             const std::array<double, 2> share = lobe_shares(b);
-            for (std::size_t c = 0; c < channel_count; ++c) {
-                for (const std::size_t half : {upper, lower}) {
-                    const double weight = block.weights[half][b];
-                    if (weight > 0)
-                        relit[k][c][b] += share[half] * block.lit[half][c][b] / weight;
-                }
-                lit[k][c][b] = block.static_light[c][b] / paths_of_block;
+            for (const std::size_t half : {upper, lower}) {
+                const double weight = block.weights[half][b];
+                if (weight <= 0)
+                    continue;
+                for (std::size_t c = 0; c < channel_count; ++c)
+                    relit[k][c * basis_count + b] += share[half] * lit(block, half, c, b) / weight;
             }
         }
     }
-    const double error = relative_error(relit);
-    return with_static_light ? std::max(error, relative_error(lit)) : error;
+    return error_of_mean(relit);
+}
+
+ErrorOfMean ProbeSums::error() const {
+    return error_of([](const Block& block, std::size_t half, std::size_t c, std::size_t b) {
+        return block.bounced[half][c][b] + (half == upper ? block.seen[c][b] : 0);
+    });
 }
 
 void ProbeSums::store(ProbeLight& light) const {
@@ -139,12 +114,21 @@ void ProbeSums::store(ProbeLight& light) const {
             }
         }
         if (all.weights[upper][b] > 0)
-            light.sky_visibility[b] = static_cast<float>(visible_[b] / all.weights[upper][b]);
-        for (std::size_t c = 0; c < channel_count; ++c) {
-            const double scattered = all.static_light[c][b] / light.paths;
-            light.static_irradiance[c][b] = static_cast<float>(direct_[c][b] + scattered);
+            light.sky_visibility[b] = static_cast<float>(all.visible[b] / all.weights[upper][b]);
+    }
+    const ErrorOfMean bounced =
+        error_of([](const Block& block, std::size_t half, std::size_t c, std::size_t b) {
+            return block.bounced[half][c][b];
+        });
+    light.transfer_error = static_cast<float>(bounced.on_own_scale());
+    BlockMeans<upward_count> visible{};
+    for (std::size_t k = 0; k < block_count; ++k) {
+        for (std::size_t b = 0; b < upward_count; ++b) {
+            if (blocks_[k].weights[upper][b] > 0)
+                visible[k][b] = blocks_[k].visible[b] / blocks_[k].weights[upper][b];
         }
     }
+    light.visibility_error = static_cast<float>(error_of_mean(visible).on_own_scale());
 }
 
 }  // namespace drtv::bake

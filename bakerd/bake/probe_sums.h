@@ -3,6 +3,7 @@
 // samples: an open sky, a plane and the energy bound then hold exactly, whatever the samples.
 #pragma once
 
+#include "bakerd/bake/basis_sums.h"
 #include "bakerd/bake/convergence.h"
 #include "bakerd/bake/integrate.h"
 
@@ -18,10 +19,6 @@ namespace drtv::bake {
 
 // Half of the sphere of first directions, by the sign of z.
 enum class Half : std::size_t { upper, lower };
-
-// The cosine between a direction and each basis direction, 0 where it is negative.
-using BasisWeights = std::array<float, basis_count>;
-[[nodiscard]] BasisWeights basis_weights(const glm::vec3& direction);
 
 class ProbeSums {
   public:
@@ -40,39 +37,34 @@ class ProbeSums {
                          Half half,
                          const glm::vec3& throughput,
                          const glm::vec3& direction);
-    // Static light of one path: E/pi in W/m2, times the number of paths.
-    void add_static(const BasisWeights& weights, const glm::vec3& light);
-    // Static light straight from a lamp to the probe, once for all paths.
-    void add_direct(const BasisWeights& weights, const glm::vec3& light);
+    // Of E/pi relit by a sky of radiance 1: straight and by bounce together.
+    [[nodiscard]] ErrorOfMean error() const;
 
-    // As IntegrationSettings::error has it.
-    [[nodiscard]] double error(std::uint32_t paths, bool with_static_light) const;
-
-    // REQUIRES: the transfer of `light` is zero, its paths are counted.
-    // Sets its transfer (the bounced sky), visibility and static irradiance.
+    // REQUIRES: the transfer of `light` is zero.
+    // Sets its transfer (the bounced sky) and visibility, and the errors of both.
     void store(ProbeLight& light) const;
 
   private:
     using Coefficients = std::array<std::array<std::array<double, sh_count>, basis_count>, channel_count>;
-    using BasisSums = std::array<std::array<double, basis_count>, channel_count>;
 
     // Enough for the relit irradiance of a block.
     struct Block {
         std::array<std::array<double, basis_count>, 2> weights{};  // [half]
-        std::array<BasisSums, 2> lit{};                            // [half], under a sky of radiance 1
-        BasisSums static_light{};
+        // Under a sky of radiance 1: straight from it, and [half] by bounce.
+        BasisSums seen{};
+        std::array<BasisSums, 2> bounced{};
+        std::array<double, basis_count> visible{};
 
         void add(const Block& other);
     };
 
-    static void add(BasisSums& sums, const BasisWeights& weights, const glm::vec3& light);
-    static void add(BasisSums& sums, const BasisSums& more);
+    // What `lit`, which gives the sum of a block for each half, makes of each block.
+    template <class Lit>
+    [[nodiscard]] ErrorOfMean error_of(Lit lit) const;
 
     std::array<Block, block_count> blocks_{};
     Block* block_ = nullptr;  // of the path at work
     std::array<Coefficients, 2> bounced_{};
-    std::array<double, basis_count> visible_{};
-    BasisSums direct_{};
 };
 
 }  // namespace drtv::bake

@@ -1,6 +1,7 @@
 #include "bakerd/bake/probe_warnings.h"
 
 #include "bakerd/bake/interiors.h"
+#include "bakerd/bake/probe_encoding.h"
 #include "bakerd/bake/shown_names.h"
 #include "placement/candidates.h"
 #include "placement/units.h"
@@ -46,23 +47,6 @@ bool is_probe(const map::ManualProbe& probe, std::size_t p, std::span<const plac
 }
 
 }  // namespace
-
-bool is_dark(const Sector& sector, std::size_t probe) {
-    constexpr auto is_nothing = [](std::int16_t code) { return code == 0; };
-    const Probe& light = sector.probes[probe];
-    if (!std::ranges::all_of(light.sky_visibility, is_nothing))
-        return false;
-    for (const auto& channel : light.transfer) {
-        for (const auto& basis : channel) {
-            if (!std::ranges::all_of(basis, is_nothing))
-                return false;
-        }
-    }
-    if (sector.static_irradiance.empty())
-        return true;
-    return std::ranges::all_of(sector.static_irradiance[probe].codes,
-                               [&](const auto& channel) { return std::ranges::all_of(channel, is_nothing); });
-}
 
 void warn_of_dark_probes(const trace::Scene& scene,
                          const Sector& sector,

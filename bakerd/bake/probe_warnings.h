@@ -15,9 +15,6 @@
 
 namespace drtv::bake {
 
-// Whether neither the sky nor any light of the map reaches the sector's probe.
-[[nodiscard]] bool is_dark(const Sector& sector, std::size_t probe);
-
 // Of dark probes: of each that was placed by hand, and of the others how many, with the thing over the first.
 void warn_of_dark_probes(const trace::Scene& scene,
                          const Sector& sector,

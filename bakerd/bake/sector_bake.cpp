@@ -64,7 +64,9 @@ class SectorBake {
         // Isolated: a thread that waits for the rest of its sector must not start another one in between.
         tbb::this_task_arena::isolate(
             [&] { tbb::parallel_invoke([&] { integrate_probes(); }, [&] { index_probes(); }); });
-        store_probes(probes_, baked_.sector);
+        if (auto stored = store_probes(probes_, baked_.sector); !stored)
+            return tl::unexpected(stored.error());
+        complete_quality(**placed);
         for (const BakedProbe& probe : probes_)
             baked_.counts.push_back(probe.counts);
         baked_.sector.convergence = convergence_of(probes_, settings_);
@@ -105,20 +107,36 @@ class SectorBake {
             RayWatch* watch = watch_ ? &watch_() : nullptr;
             ProbeLight light =
                 integrate_probe(*around_.scene, world_.lights(), position, *around_.samples, how, watch);
-            probes_[p] = encode_probe(light);
+            probes_[p] = encode_probe(light, world_.lights().sets());
             back_hits_[p] = std::move(light.back_hit_objects);
         });
     }
 
     void index_probes() {
         if (given_.grid) {
-            baked_.sector.grid = *given_.grid;
+            indexed_ = *given_.grid;
+            baked_.sector.grid = indexed_.grid;
             return;
         }
         const trace::FloatMode float_mode;
         const placement::ProbeGrid grid = placement::build_grid(
             coordinate_.i, coordinate_.j, grid_probes(), surroundings_of(*around_.scene, settings_.reach_m));
-        baked_.sector.grid = {grid.z_origin_units, grid.cell_height_units, grid.cells};
+        indexed_ = {
+            {grid.z_origin_units, grid.cell_height_units, grid.cells}, grid.buried_cells, grid.blind_cells};
+        baked_.sector.grid = indexed_.grid;
+    }
+
+    // What the probes' own light does not say.
+    void complete_quality(const PlacedSector& placed) {
+        Quality& quality = *baked_.sector.quality;
+        quality.buried_cells = indexed_.buried_cells;
+        quality.blind_cells = indexed_.blind_cells;
+        for (std::size_t p = 0; p < quality.probes.size(); ++p) {
+            quality.probes[p].dark = is_dark(baked_.sector, p);
+            quality.probes[p].moved = placed.moved[p];
+        }
+        if (quality.probes.empty())
+            baked_.sector.quality.reset();
     }
 
     // With the interiors that name them.
@@ -190,6 +208,7 @@ class SectorBake {
 
     BakedSector baked_;
     std::vector<BakedProbe> probes_;
+    Given::IndexedGrid indexed_;
     std::vector<BackHits> back_hits_;  // of each probe that was not given
 };
 

@@ -28,8 +28,15 @@ struct ByPlace {
 
 // What of the sector is known before it is baked: it is stored as it is.
 struct Given {
+    // The grid of the same placement, and what counts are kept of it.
+    struct IndexedGrid {
+        Grid grid;
+        std::uint32_t buried_cells = 0;
+        std::uint32_t blind_cells = 0;
+    };
+
     std::optional<PlacedSector> placement;
-    std::optional<Grid> grid;                                   // of the same placement
+    std::optional<IndexedGrid> grid;
     std::map<placement::Position, BakedProbe, ByPlace> probes;  // those that stand elsewhere are not used
 };
 

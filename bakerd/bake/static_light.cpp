@@ -33,7 +33,7 @@ float scattering_density(const trace::Surface& surface, float cosine, bool throu
 void StaticLight::add_met(const Path& path, const trace::Hit& hit, const glm::vec3& emission) {
     const float drawn = next_event_.density_of(path.ray.origin, path.ray.direction, hit);
     const float watts = 4 * path.density / (lumens_per_watt * (path.density + drawn));
-    sums_.add_static(path.weights, path.throughput * emission * watts);
+    sums_.add(path.weights, path.throughput * emission * watts);
 }
 
 void StaticLight::add_drawn_at_probe(std::uint32_t path_number) {
@@ -51,13 +51,13 @@ void StaticLight::add_drawn_at_probe(std::uint32_t path_number) {
     const BasisWeights weights = basis_weights(incident->direction);
     const glm::vec3 seen = share_seen(task_.probe, *incident, weights, light / paths);
     if (seen != glm::vec3(0))
-        sums_.add_static(weights, light * seen);
+        sums_.add(weights, light * seen);
 }
 
 void StaticLight::add_at_surface(const Path& path, const trace::Hit& hit, const trace::Surface& surface) {
     const glm::vec3 point = path.ray.origin + path.ray.direction * hit.distance_m;
-    for (const Sun& sun : next_event_.suns())
-        add_incident(path, hit, surface, next_event_.towards(sun, point));
+    for (const Sun* sun : next_event_.suns())
+        add_incident(path, hit, surface, next_event_.towards(*sun, point));
     if (!next_event_.has_drawn_lights())
         return;
     const std::uint32_t k = path.bounce + 1;
@@ -91,7 +91,7 @@ void StaticLight::add_incident(const Path& path,
     light *= seen;
     if (incident.density > 0)
         light *= incident.density / (incident.density + scattering_density(surface, cosine, through));
-    sums_.add_static(path.weights, light);
+    sums_.add(path.weights, light);
 }
 
 void StaticLight::add_direct() {
@@ -105,8 +105,8 @@ void StaticLight::add_direct() {
         if (seen != glm::vec3(0))
             sums_.add_direct(weights, light * seen);
     };
-    for (const Sun& sun : next_event_.suns())
-        add(next_event_.towards(sun, task_.probe));
+    for (const Sun* sun : next_event_.suns())
+        add(next_event_.towards(*sun, task_.probe));
     for (const PointLight* light : next_event_.points())
         add(next_event_.towards(*light, task_.probe));
 }

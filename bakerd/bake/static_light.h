@@ -1,8 +1,10 @@
-// Static light on the paths of one probe: at each of their points one light is drawn, and emissive surfaces
-// count both when they are drawn and when a path meets them, by the balance heuristic (Veach 1997).
+// Static light of one set of lights on the paths of one probe: at each of their points one light is drawn,
+// and emissive surfaces count both when they are drawn and when a path meets them, by the balance heuristic
+// (Veach 1997). What a set brings is a function of its lights and of the paths: not of the other sets.
 #pragma once
 
 #include "bakerd/bake/integrate.h"
+#include "bakerd/bake/light_sums.h"
 #include "bakerd/bake/next_event.h"
 #include "bakerd/bake/probe_sums.h"
 #include "bakerd/bake/ray_watch.h"
@@ -52,14 +54,13 @@ inline constexpr std::uint32_t numbers_per_light = 3;
 
 class StaticLight {
   public:
-    StaticLight(const ProbeTask& task, const StaticLights& lights, ProbeSums& sums)
-        : task_(task),
-          sums_(sums),
-          next_event_(task.scene, lights, task.probe, task.settings.reach_m),
-          present_(!next_event_.idle()) {}
+    StaticLight(const ProbeTask& task, const LightSet& lights)
+        : task_(task), next_event_(task.scene, lights, task.probe, task.settings.reach_m) {}
 
-    // Whether any light is within reach. REQUIRES of all that follows: there is one.
-    [[nodiscard]] bool present() const { return present_; }
+    // Whether no light is within reach. REQUIRES of all that follows: there is one.
+    [[nodiscard]] bool idle() const { return next_event_.idle(); }
+    [[nodiscard]] LightSums& sums() { return sums_; }
+    [[nodiscard]] const LightSums& sums() const { return sums_; }
     [[nodiscard]] std::uint64_t shadow_rays() const { return shadow_rays_; }
 
     // An emissive surface drawn at the probe; other lights are summed up without noise by add_direct.
@@ -92,9 +93,8 @@ class StaticLight {
                                         const glm::vec3& light);
 
     const ProbeTask& task_;
-    ProbeSums& sums_;
+    LightSums sums_;
     const NextEvent next_event_;
-    const bool present_;
     std::uint64_t shadow_rays_ = 0;
 };
 

@@ -2,6 +2,7 @@
 #include "bakerd/map/content_digest.h"
 
 #include <algorithm>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -22,6 +23,12 @@ void add_view(Hasher& hasher, const TextureView& view, const Map& map) {
     hasher.add(map.textures[view.texture].digest);
     hasher.add(plain(view.u_from_uv));
     hasher.add(plain(view.v_from_uv));
+}
+
+// By its name: the index depends on the files.
+void add_group(Hasher& hasher, std::uint32_t light_group, const Map& map) {
+    if (light_group != no_light_group)
+        hasher.add_sized(std::string_view(map.light_groups[light_group]));
 }
 
 // Puts things in the order of their digests, and the digests too.
@@ -101,6 +108,7 @@ Digest digest_object(const Object& object, const Map& map) {
     hasher.add(object.role);
     for (glm::length_t column = 0; column < 4; ++column)
         hasher.add(plain(object.world_from_object[column]));
+    add_group(hasher, object.light_group, map);
     return hasher.finish();
 }
 
@@ -114,7 +122,7 @@ Digest digest_volume(const Volume& volume) {
     return hasher.finish();
 }
 
-Digest digest_light(const Light& light) {
+Digest digest_light(const Light& light, const Map& map) {
     Hasher hasher;
     hasher.add(Tag::light);
     hasher.add(light.kind);
@@ -126,6 +134,7 @@ Digest digest_light(const Light& light) {
         hasher.add(plain(light.position));
     if (light.kind != LightKind::point)
         hasher.add(plain(light.direction));
+    add_group(hasher, light.light_group, map);
     return hasher.finish();
 }
 
@@ -138,7 +147,7 @@ void finish_content(Map& map) {
     std::vector<Digest> lights;
     std::vector<Digest> volumes;
     for (Light& light : map.lights)
-        light.digest = digest_light(light);
+        light.digest = digest_light(light, map);
     std::ranges::stable_sort(map.lights, {}, &Light::digest);
     for (const Light& light : map.lights)
         lights.push_back(light.digest);

@@ -14,7 +14,7 @@ namespace drtv::map {
 [[nodiscard]] Digest digest_mesh(const Mesh& mesh);
 [[nodiscard]] Digest digest_object(const Object& object, const Map& map);
 [[nodiscard]] Digest digest_volume(const Volume& volume);
-[[nodiscard]] Digest digest_light(const Light& light);
+[[nodiscard]] Digest digest_light(const Light& light, const Map& map);
 
 // Brings objects, probes, volumes and lights into an order that depends on content only, and digests it all.
 // REQUIRES: each volume's `probe_name` is empty or a probe's.

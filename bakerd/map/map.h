@@ -131,6 +131,8 @@ struct Mesh {
     Digest digest;
 };
 
+inline constexpr std::uint32_t no_light_group = UINT32_MAX;
+
 enum class Role : std::uint8_t { fixed, vegetation };  // "static" and "vegetation"
 
 // One placed mesh. `world_from_object` may mirror; then the winding of the object space still tells the
@@ -139,8 +141,9 @@ struct Object {
     std::uint32_t mesh = 0;
     Role role = Role::fixed;
     glm::mat4x3 world_from_object{1};
-    Bounds bounds;  // world
-    Digest digest;  // mesh, place, role
+    std::uint32_t light_group = no_light_group;  // of one that shines: an index into Map::light_groups
+    Bounds bounds;                               // world
+    Digest digest;                               // mesh, place, role, light group
     std::string name;
 };
 
@@ -173,8 +176,9 @@ struct Light {
     float range_m = 0;
     float inner_cone_radians = 0;
     float outer_cone_radians = 0;
-    glm::vec3 position{};   // world
-    glm::vec3 direction{};  // world; in which a spot or directional light shines
+    glm::vec3 position{};                        // world
+    glm::vec3 direction{};                       // world; in which a spot or directional light shines
+    std::uint32_t light_group = no_light_group;  // an index into Map::light_groups
     Digest digest;
     std::string name;
 };
@@ -187,7 +191,8 @@ struct Map {
     std::vector<ManualProbe> probes;
     std::vector<Volume> volumes;
     std::vector<Light> lights;
-    std::vector<std::string> warnings;  // one sentence each
+    std::vector<std::string> light_groups;  // names, one of each
+    std::vector<std::string> warnings;      // one sentence each
     // Covers all that can change a bake and nothing else: no names, no order of files, nodes or buffers.
     Digest content;
 };

@@ -28,6 +28,22 @@ bool is_flat(const glm::dmat4& world_from_object) {
 
 }  // namespace
 
+bool shines(const Mesh& mesh, const Map& map) {
+    return std::ranges::any_of(mesh.primitives, [&](const Primitive& primitive) {
+        return map.materials[primitive.material].emission != glm::vec3(0);
+    });
+}
+
+std::uint32_t light_group_of(const std::string& name, Map& map) {
+    if (name.empty())
+        return no_light_group;
+    const auto known = std::ranges::find(map.light_groups, name);
+    const auto index = static_cast<std::uint32_t>(known - map.light_groups.begin());
+    if (known == map.light_groups.end())
+        map.light_groups.push_back(name);
+    return index;
+}
+
 bool is_far(const glm::dvec3& position) {
     return !(glm::length(position) < max_distance_m);
 }
@@ -59,7 +75,7 @@ Imported MeshPlacer::place(MeshPlace place, const NodePurpose& purpose) {
             return added;
     }
     if (!is_volume(purpose.role))
-        return add_object(std::move(place), purpose.role);
+        return add_object(std::move(place), purpose);
     Volume volume;
     if (purpose.role == NodeRole::interior) {
         volume.kind = VolumeKind::interior;
@@ -99,10 +115,10 @@ std::uint32_t MeshPlacer::flattened_mesh(std::uint32_t mesh, const glm::mat4x3& 
     return keep_once(std::move(flat), map_.meshes, shared_.meshes);
 }
 
-Imported MeshPlacer::add_object(MeshPlace place, NodeRole role) {
+Imported MeshPlacer::add_object(MeshPlace place, const NodePurpose& purpose) {
     Object object;
     object.mesh = place.mesh;
-    object.role = role == NodeRole::vegetation ? Role::vegetation : Role::fixed;
+    object.role = purpose.role == NodeRole::vegetation ? Role::vegetation : Role::fixed;
     object.world_from_object = glm::mat4x3(glm::dmat4x3(place.world_from_object));
     object.name = as_sentence(std::move(place.name));  // it is shown to people
     if (is_flat(place.world_from_object)) {
@@ -120,6 +136,8 @@ Imported MeshPlacer::add_object(MeshPlace place, NodeRole role) {
             object.bounds.extend(corner);
         }
     }
+    if (shines(map_.meshes[object.mesh], map_))
+        object.light_group = light_group_of(purpose.light_group, map_);
     object.digest = digest_object(object, map_);
     map_.objects.push_back(std::move(object));
     return {};

@@ -22,6 +22,9 @@ inline constexpr double max_distance_m = 1e9;
 [[nodiscard]] bool is_far(const glm::dvec3& position);
 inline constexpr const char* far_sentence = "it reaches farther than 10^9 m from the origin";
 
+// Whether a part of it has a material that emits light.
+[[nodiscard]] bool shines(const Mesh& mesh, const Map& map);
+
 // Places the meshes of one document's nodes. Instancing lets a small file ask for much, so what is placed is
 // counted, and refused beyond limits that are far above any real map. Sentences name neither file nor node;
 // the caller does.
@@ -39,7 +42,7 @@ class MeshPlacer {
     [[nodiscard]] std::size_t vertices_of(std::uint32_t mesh) const;
     [[nodiscard]] Imported count_copied(std::uint32_t mesh, std::size_t instances);
     [[nodiscard]] std::uint32_t flattened_mesh(std::uint32_t mesh, const glm::mat4x3& world_from_object);
-    [[nodiscard]] Imported add_object(MeshPlace place, NodeRole role);
+    [[nodiscard]] Imported add_object(MeshPlace place, const NodePurpose& purpose);
     [[nodiscard]] Imported add_volume(const MeshPlace& place, Volume volume);
 
     Map& map_;

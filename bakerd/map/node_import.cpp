@@ -3,6 +3,7 @@
 #include "bakerd/map/light_import.h"
 #include "bakerd/map/mesh_import.h"
 #include "bakerd/map/mesh_placement.h"
+#include "bakerd/map/named_groups.h"
 #include "bakerd/map/node_role.h"
 #include "bakerd/map/node_transform.h"
 #include "bakerd/map/node_tree.h"
@@ -40,6 +41,7 @@ struct Pending {
     int node;
     glm::dmat4 world_from_parent;
     NodePurpose purpose;
+    int group_node = -1;  // that gave it its light group
     bool hidden = false;  // what would be seen of it, or shine, is not there: probes and volumes are helpers
 };
 
@@ -69,11 +71,25 @@ class NodeImporter {
                 return fail(pending.node, "its transform is not finite");
             if (auto read = read_purpose(node, pending.purpose); !read)
                 return fail(pending.node, read.error());
+            if (has_light_group(node)) {
+                const bool ends = pending.purpose.light_group.empty();
+                pending.group_node = ends ? -1 : pending.node;
+                if (!ends)
+                    groups_.add(pending.node, pending.purpose.light_group);
+            }
             pending.hidden = pending.hidden || is_hidden(node);
             if (auto imported = import_node(pending, world_from_node); !imported)
                 return imported;
-            push(stack, node.children, {-1, world_from_node, pending.purpose, pending.hidden});
+            push(stack,
+                 node.children,
+                 {-1, world_from_node, pending.purpose, pending.group_node, pending.hidden});
         }
+        groups_.tell_unused([&](int node, const std::string& group) {
+            warn(state_.map,
+                 state_.document.at(
+                     shown(node) +
+                     fmt::format(": light_group '{}' is of no use: nothing there shines", group)));
+        });
         return {};
     }
 
@@ -88,11 +104,13 @@ class NodeImporter {
         }
     }
 
-    [[nodiscard]] tl::unexpected<std::string> fail(int node, const std::string& rest) const {
+    [[nodiscard]] std::string shown(int node) const {
         const std::string& name = at_index(model_.nodes, node).name;
-        const std::string where =
-            name.empty() ? fmt::format("node {}", node) : fmt::format("node {} ('{}')", node, name);
-        return tl::unexpected(state_.document.at(where + ": " + rest));
+        return name.empty() ? fmt::format("node {}", node) : fmt::format("node {} ('{}')", node, name);
+    }
+
+    [[nodiscard]] tl::unexpected<std::string> fail(int node, const std::string& rest) const {
+        return tl::unexpected(state_.document.at(shown(node) + ": " + rest));
     }
 
     Imported import_node(const Pending& pending, const glm::dmat4& world_from_node) {
@@ -100,7 +118,7 @@ class NodeImporter {
             return {};
         const tinygltf::Node& node = at_index(model_.nodes, pending.node);
         if (!pending.hidden) {
-            if (auto light = add_light(pending.node, world_from_node); !light)
+            if (auto light = add_light(pending, world_from_node); !light)
                 return light;
         }
         if (pending.purpose.role == NodeRole::probe)
@@ -112,6 +130,9 @@ class NodeImporter {
             return tl::unexpected(mesh.error());
         if (*mesh == no_mesh)
             return {};
+        if (pending.group_node >= 0 && !is_volume(pending.purpose.role) &&
+            shines(state_.map.meshes[*mesh], state_.map))
+            groups_.add_light(pending.group_node);
         const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
         if (instancing != node.extensions.end())
             return place_instances(pending, {*mesh, world_from_node, node.name}, instancing->second);
@@ -175,7 +196,8 @@ class NodeImporter {
         return {};
     }
 
-    Imported add_light(int index, const glm::dmat4& world_from_node) {
+    Imported add_light(const Pending& pending, const glm::dmat4& world_from_node) {
+        const int index = pending.node;
         const tinygltf::Node& node = at_index(model_.nodes, index);
         const auto found = node.extensions.find("KHR_lights_punctual");
         if (found == node.extensions.end())
@@ -190,6 +212,8 @@ class NodeImporter {
         const glm::dvec3 shines = -glm::dvec3(world_from_node[2]);  // along the node's -z
         light->direction = glm::length(shines) > 0 ? glm::vec3(glm::normalize(shines)) : glm::vec3(0, 0, -1);
         light->name = node.name;
+        light->light_group = light_group_of(pending.purpose.light_group, state_.map);
+        groups_.add_light(pending.group_node);
         warn_of_sun(*light);
         state_.map.lights.push_back(std::move(*light));
         return {};
@@ -212,6 +236,7 @@ class NodeImporter {
     MeshPlacer placer_;
     std::vector<std::optional<std::uint32_t>> mesh_of_;  // by glTF mesh, once imported
     const std::vector<bool> coarser_;                    // by node
+    NamedGroups groups_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace drtv::map {
 namespace {
@@ -23,6 +24,9 @@ constexpr std::array<RoleName, 6> role_names = {{{"static", NodeRole::fixed},
 // Beyond the upper one every sector would look far around itself (placement::decision_margin_m).
 constexpr double min_spacing_m = 1;
 constexpr double max_spacing_m = 8;
+
+// Of a sector file (drtv/sector.h).
+constexpr std::size_t max_light_group_name = 63;
 
 tl::expected<void, std::string> read_role(const tinygltf::Value& value, NodeRole& role) {
     if (!value.IsString())
@@ -46,7 +50,27 @@ tl::expected<float, std::string> read_spacing(const tinygltf::Value& value) {
     return static_cast<float>(spacing_m);
 }
 
+tl::expected<std::string, std::string> read_light_group(const tinygltf::Value& value) {
+    if (!value.IsString())
+        return tl::unexpected(std::string("light_group must be a string"));
+    const std::string& name = value.Get<std::string>();
+    const auto is_control = [](char letter) {
+        const auto code = static_cast<unsigned char>(letter);
+        return code < 0x20 || code == 0x7F;
+    };
+    if (std::ranges::any_of(name, is_control))
+        return tl::unexpected(std::string("light_group has a control character in its name"));
+    if (name.size() > max_light_group_name)
+        return tl::unexpected(fmt::format(
+            "light_group '{}' has {} bytes, over the limit of {}", name, name.size(), max_light_group_name));
+    return name;
+}
+
 }  // namespace
+
+bool has_light_group(const tinygltf::Node& node) {
+    return node.extras.IsObject() && node.extras.Has("light_group");
+}
 
 tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePurpose& purpose) {
     const tinygltf::Value& extras = node.extras;
@@ -63,6 +87,12 @@ tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePur
         if (!value.IsString())
             return tl::unexpected(std::string("bake_probe must be a string"));
         purpose.bake_probe = value.Get<std::string>();
+    }
+    if (has_light_group(node)) {
+        auto name = read_light_group(extras.Get("light_group"));
+        if (!name)
+            return tl::unexpected(name.error());
+        purpose.light_group = std::move(*name);
     }
     if (extras.Has("bake_spacing")) {
         const auto spacing_m = read_spacing(extras.Get("bake_spacing"));

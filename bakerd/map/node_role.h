@@ -22,14 +22,18 @@ enum class NodeRole {
 // Children inherit it.
 struct NodePurpose {
     NodeRole role = NodeRole::fixed;
-    std::string bake_probe;  // name of the probe that an interior uses, or empty
-    float spacing_m = 0;     // between automatic probes inside of the mesh; 0 where nothing is said
+    std::string bake_probe;   // name of the probe that an interior uses, or empty
+    float spacing_m = 0;      // between automatic probes inside of the mesh; 0 where nothing is said
+    std::string light_group;  // of what shines; empty where nothing is said
 };
 
-// Replaces what the node's `bake_role`, `bake_probe` and `bake_spacing` say; a role of its own ends what is
-// inherited of the spacing. Fails when one of them is of another type, names no role, is out of range or does
-// not go with the others; the sentence does not name the node.
+// Replaces what the node's `bake_role`, `bake_probe`, `bake_spacing` and `light_group` say; a role of its own
+// ends what is inherited of the spacing. Fails when one of them is of another type, names no role, is out of
+// range or does not go with the others; the sentence does not name the node.
 [[nodiscard]] tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePurpose& purpose);
+
+// Whether it says `light_group` itself.
+[[nodiscard]] bool has_light_group(const tinygltf::Node& node);
 
 [[nodiscard]] constexpr bool is_volume(NodeRole role) {
     return role == NodeRole::no_probes || role == NodeRole::interior || role == NodeRole::spacing;

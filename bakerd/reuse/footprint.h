@@ -18,7 +18,7 @@
 namespace drtv::reuse {
 
 // Of what a record says, and how: results whose record is of another version are never candidates.
-inline constexpr std::uint32_t footprint_version = 5;
+inline constexpr std::uint32_t footprint_version = 6;
 
 // Results of a sector with the same key may stand for each other, where their records say so: settings_key
 // and the version of the records.
@@ -30,7 +30,6 @@ struct ProbeRecord {
     // Its share of the file's statistics.
     std::uint32_t rays = 0;
     std::uint32_t shadow_rays = 0;
-    std::uint32_t back_hits = 0;
     float error = 0;
     // Of its paths' weight, what may have changed since it was baked; above 0 of one that was taken over from
     // another map within a tolerance. Times the gain it bounds how far its coefficients are off.

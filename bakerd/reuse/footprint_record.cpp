@@ -51,7 +51,6 @@ void visit_members(const std::vector<ProbeRecord>&, Visit visit) {
     visit_position<ProbeRecord>(visit);
     visit(std::mem_fn(&ProbeRecord::rays), Neighbours::alike);
     visit(std::mem_fn(&ProbeRecord::shadow_rays), Neighbours::alike);
-    visit(std::mem_fn(&ProbeRecord::back_hits), Neighbours::unrelated);
     visit(std::mem_fn(&ProbeRecord::error), Neighbours::unrelated);
     visit(std::mem_fn(&ProbeRecord::share), Neighbours::unrelated);
 }
@@ -63,7 +62,7 @@ void visit_members(const std::vector<SolidTest>&, Visit visit) {
 }
 
 constexpr std::size_t stored_bytes = sizeof(std::uint32_t);  // of each member
-static_assert(sizeof(ProbeRecord) == 8 * stored_bytes && sizeof(SolidTest) == 4 * stored_bytes);
+static_assert(sizeof(ProbeRecord) == 7 * stored_bytes && sizeof(SolidTest) == 4 * stored_bytes);
 
 template <class Record>
 void add_records(RecordWriter& writer, const std::vector<Record>& records) {

@@ -46,14 +46,28 @@ ItemDigest digest_of_interior(const bake::InteriorVolume& interior) {
     return half(hasher.finish());
 }
 
+void add_group(map::Hasher& hasher, std::uint32_t light_group, const map::Map& map) {
+    if (light_group != map::no_light_group)
+        hasher.add_sized(std::string_view(map.light_groups[light_group]));
+}
+
 // Of a light, all but where it is.
-ItemDigest shape_of_light(const map::Light& light) {
+ItemDigest shape_of_light(const map::Light& light, const map::Map& map) {
     map::Hasher hasher;
     hasher.add(light.colour);
     for (const float value :
          {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians})
         hasher.add(value);
     hasher.add(light.direction);
+    add_group(hasher, light.light_group, map);
+    return half(hasher.finish());
+}
+
+// Of an object, all but where it is and what its role is.
+ItemDigest shape_of_object(const map::Object& object, const map::Map& map) {
+    map::Hasher hasher;
+    hasher.add(map.meshes[object.mesh].digest);
+    add_group(hasher, object.light_group, map);
     return half(hasher.finish());
 }
 
@@ -91,7 +105,7 @@ Inventory take_inventory(bake::World& world) {
                                    shines,
                                    vegetation && world.bounds_volume(object.mesh),
                                    half(object.digest),
-                                   half(map.meshes[object.mesh].digest),
+                                   shape_of_object(object, map),
                                    object.bounds,
                                    object.name});
     }
@@ -103,7 +117,7 @@ Inventory take_inventory(bake::World& world) {
                                    false,
                                    false,
                                    half(light.digest),
-                                   shape_of_light(light),
+                                   shape_of_light(light, map),
                                    sun ? map::Bounds() : point(light.position),
                                    light.name});
     }

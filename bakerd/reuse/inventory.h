@@ -33,8 +33,8 @@ struct Item {
     bool emissive = false;       // an object that shines
     bool bounds_volume = false;  // vegetation of which a part is closed
     ItemDigest digest{};         // of all that can change a bake
-    ItemDigest
-        shape{};  // of an object's mesh, of a light without its place: tells a move from another change
+    ItemDigest shape{};  // of a mesh or a light, with its light group, but without its place: tells a move
+                         // from another change
     map::Bounds
         bounds;  // world; of lamps and manual probes a point; of an interior its probe's place; of a sun none
     std::string name;

@@ -18,8 +18,10 @@ bool is_usable(const EarlierBake& earlier, const FootprintGrid& grid) {
     const bool has_bounds =
         !earlier.footprint.without_bounds && earlier.assessment.probe_bounds.size() == count;
     const bool belongs = earlier.footprint.grid == grid && earlier.footprint.probes.size() == count;
+    const bool has_quality =
+        earlier.sector.quality.has_value() || earlier.sector.probes.empty();  // no file was stripped
     // Many surfaces seen from behind are reported with their names, which are not kept.
-    return has_bounds && belongs && !bake::has_many_back_hits(earlier.sector.statistics);
+    return has_bounds && belongs && has_quality && !bake::has_many_back_hits(earlier.sector.statistics);
 }
 
 // Where the earlier bake's probes stand, as placement would give it.
@@ -32,6 +34,8 @@ bake::PlacedSector placement_of(const EarlierBake& earlier) {
     placed.sector.z_shift = file.z_shift;
     for (const Probe& probe : file.probes)
         placed.sector.probes.push_back({probe.position, probe.kind, {}, {}});
+    for (std::size_t p = 0; p < file.probes.size(); ++p)
+        placed.moved.push_back(file.quality->probes[p].moved);
     for (const ProbeRecord& probe : earlier.footprint.probes)
         placed.positions.push_back(probe.position);
     const Statistics& s = file.statistics;
@@ -47,28 +51,39 @@ bake::PlacedSector placement_of(const EarlierBake& earlier) {
     return placed;
 }
 
-bake::BakedProbe baked_probe(const EarlierBake& earlier, std::size_t p, std::uint32_t paths) {
+bake::BakedProbe baked_probe(const EarlierBake& earlier, std::size_t p) {
     bake::BakedProbe probe;
     probe.transfer = earlier.sector.probes[p].transfer;
     probe.sky_visibility = earlier.sector.probes[p].sky_visibility;
     if (!earlier.sector.static_irradiance.empty())
         probe.static_irradiance = earlier.sector.static_irradiance[p];
+    for (std::size_t g = 0; g < earlier.sector.light_groups.size(); ++g) {
+        const LightGroup& group = earlier.sector.light_groups[g];
+        probe.groups.push_back({group.name, group.irradiance[p], earlier.sector.quality->group_errors[g][p]});
+    }
+    probe.quality = earlier.sector.quality->probes[p];
     const ProbeRecord& record = earlier.footprint.probes[p];
-    probe.counts = {paths, record.rays, record.shadow_rays, record.back_hits, record.error};
+    probe.counts = {record.rays, record.shadow_rays, record.error};
     return probe;
 }
 
+bake::Given::IndexedGrid grid_of(const Sector& file) {
+    if (!file.quality)
+        return {file.grid};
+    return {file.grid, file.quality->buried_cells, file.quality->blind_cells};
+}
+
 // What the bake need not find out again.
-bake::Given given_by(const EarlierBake& earlier, const bake::Settings& settings) {
+bake::Given given_by(const EarlierBake& earlier) {
     bake::Given given;
     if (earlier.assessment.placement_holds) {
         if (!earlier.assessment.placed_again)
             given.placement = placement_of(earlier);
-        given.grid = earlier.sector.grid;
+        given.grid = grid_of(earlier.sector);
     }
     for (std::size_t p = 0; p < earlier.footprint.probes.size(); ++p) {
         if (earlier.assessment.probe_bounds[p] <= earlier.assessment.tolerance)
-            given.probes[earlier.footprint.probes[p].position] = baked_probe(earlier, p, settings.rays);
+            given.probes[earlier.footprint.probes[p].position] = baked_probe(earlier, p);
     }
     return given;
 }
@@ -97,7 +112,7 @@ class Recording {
     tl::expected<Rebake, std::string> bake(const EarlierBake* earlier) {
         if (earlier != nullptr && !is_usable(*earlier, grid_))
             earlier = nullptr;
-        const bake::Given given = earlier != nullptr ? given_by(*earlier, settings_) : bake::Given{};
+        const bake::Given given = earlier != nullptr ? given_by(*earlier) : bake::Given{};
         const auto watch = [&]() -> bake::RayWatch& { return recorders_.of_this_thread(); };
         auto baked = bake::bake_sector(world_, sector_, settings_, given, watch);
         if (!baked)
@@ -141,7 +156,7 @@ class Recording {
             const bool is_reused = reused != shares.end();
             const float share = is_reused ? reused->second : 0;
             result.footprint.probes.push_back(
-                {position, counts.rays, counts.shadow_rays, counts.back_hits, counts.error, share});
+                {position, counts.rays, counts.shadow_rays, counts.error, share});
             result.probes_reused += is_reused ? 1 : 0;
         }
     }

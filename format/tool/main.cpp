@@ -67,7 +67,7 @@ int run(const std::vector<std::string>& arguments) {
         return exit_valid;
     }
     if (command == "--version") {
-        std::puts("drtv " DRTV_VERSION ", sector format 1.2");
+        std::puts("drtv " DRTV_VERSION ", sector format 1.3");
         return exit_valid;
     }
     complain("unknown command \"" + command + "\"; drtv --help lists them");

@@ -211,6 +211,57 @@ TEST(Convergence, ReportedErrorIsTheTrueOne) {
     }
 }
 
+// The same of each part on its own scale; of a lamp at night too, which the floor of the error above hides.
+TEST(Convergence, QualityOfEachPartIsTheTrueOne) {
+    GltfBuilder b;
+    const int grey = b.add_material({.colour = {0.7f, 0.7f, 0.7f, 1}, .double_sided = true});
+    b.place(ground(40), "", grey);
+    b.place(box({-6, 0, -1}, {-4, 5, 3}), "", grey);
+    b.place(box({2, 0, 1}, {5, 2, 2}), "", grey);
+    b.place(box({-3, 3, -8}, {3, 3.2f, 0}), "", grey);
+    const auto lamp = [&](double candela, std::optional<std::string> group) {
+        b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", candela}}),
+                    .translation = glm::dvec3(3.5, 1.2, 3),
+                    .light_group = std::move(group)});
+    };
+    lamp(100, std::nullopt);
+    lamp(5, "dim");
+    const auto world = open_world(b);
+    // One number of it a row, over all of which one error is told.
+    const auto parts = [](const bake::ProbeLight& light) {
+        std::array<std::vector<double>, 4> numbers;
+        for (std::size_t basis = 0; basis < basis_count; ++basis) {
+            numbers[0].push_back(under_constant_sky(light, 0, basis));
+            if (basis < 3)
+                numbers[1].push_back(static_cast<double>(light.sky_visibility[basis]));
+            numbers[2].push_back(static_cast<double>(light.static_irradiance[0][basis]));
+            numbers[3].push_back(static_cast<double>(light.groups.at(0).irradiance[0][basis]));
+        }
+        return numbers;
+    };
+    const auto truth = parts(light_at(*world, {0.004f, 0.007f, 1.5f}, 262144));
+    std::array<double, 4> reported{}, actual{};
+    for (int n = 0; n < 40; ++n) {
+        const glm::vec3 place(static_cast<float>(n % 5) * 0.002f, static_cast<float>(n / 5) * 0.002f, 1.5f);
+        const bake::ProbeLight light = light_at(*world, place, 1024);
+        const std::array<float, 4> errors = {light.transfer_error, light.visibility_error, light.static_error,
+                                             light.groups.at(0).error};
+        const auto found = parts(light);
+        for (std::size_t part = 0; part < 4; ++part) {
+            double square = 0, mean = 0;
+            for (std::size_t k = 0; k < truth[part].size(); ++k) {
+                square += std::pow(found[part][k] - truth[part][k], 2);
+                mean += truth[part][k];
+            }
+            const auto count = static_cast<double>(truth[part].size());
+            actual[part] += square / count / std::pow(mean / count, 2);
+            reported[part] += std::pow(static_cast<double>(errors[part]), 2);
+        }
+    }
+    for (std::size_t part = 0; part < 4; ++part)
+        EXPECT_NEAR(std::sqrt(reported[part] / actual[part]), 1, 0.35) << part;
+}
+
 TEST(Convergence, ErrorAskedForIsReachedWithFewerPaths) {
     GltfBuilder b;
     b.place(ground(40), "", b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}));
@@ -224,6 +275,9 @@ TEST(Convergence, ErrorAskedForIsReachedWithFewerPaths) {
     EXPECT_LT(easy.paths, hard.paths);
     EXPECT_EQ(budget.paths, 1024u);
     EXPECT_GT(budget.error, 0.0001f);
+    EXPECT_TRUE(budget.budget_ended);
+    EXPECT_FALSE(easy.budget_ended || hard.budget_ended);
+    EXPECT_FALSE(light_at(*world, {20, 20, 1}, 256).budget_ended) << "no error was asked for";
 }
 
 }  // namespace

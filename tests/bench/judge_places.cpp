@@ -4,6 +4,7 @@
 // six in seven of them meet something from behind. A cell is unseen when of its nine points none sees the
 // probe that it names, although one of them is in no solid; it is a fault when one of them sees another
 // probe.
+#include "bakerd/bake/probe_encoding.h"
 #include "bakerd/bake/probe_warnings.h"
 #include "tests/bench/bench_world.h"
 

@@ -38,9 +38,26 @@ def probe_error(a, b):
                 abs(row_a[0] - row_b[0]) / 0.2821,
                 *(abs(x - y) / 0.9772 for x, y in zip(row_a[1:], row_b[1:])),
             )
-    light_a, light_b = (p.get("static_irradiance") or [[0.0] * 4] * 3 for p in (a, b))
+    return worst
+
+
+def light_error(light_a, light_b):
+    """The same of static irradiance, which may be missing."""
+    light_a, light_b = (light or [[0.0] * 4] * 3 for light in (light_a, light_b))
     full = max(STATIC_RANGE, max(x for channel in light_a for x in channel))
-    return max(worst, max(abs(x - y) for ca, cb in zip(light_a, light_b) for x, y in zip(ca, cb)) / full)
+    return max(abs(x - y) for ca, cb in zip(light_a, light_b) for x, y in zip(ca, cb)) / full
+
+
+def lights_of(file, probe):
+    """By light group; the name of none is None."""
+    groups = dict(zip(file.get("light_groups", []), probe.get("light_groups", [])))
+    return {None: probe.get("static_irradiance"), **groups}
+
+
+def lights_error(first, second, p, q):
+    """Of all light groups of two probes."""
+    lights_p, lights_q = lights_of(first, p), lights_of(second, q)
+    return max(light_error(lights_p.get(name), lights_q.get(name)) for name in lights_p | lights_q)
 
 
 def file_error(a, b):
@@ -50,7 +67,13 @@ def file_error(a, b):
         "grid"
     ] != second["grid"]:
         return float("inf")
-    return max((probe_error(p, q) for p, q in zip(first["probes"], second["probes"])), default=0.0)
+    return max(
+        (
+            max(probe_error(p, q), lights_error(first, second, p, q))
+            for p, q in zip(first["probes"], second["probes"])
+        ),
+        default=0.0,
+    )
 
 
 class DemoMap:

@@ -7,6 +7,10 @@ import shutil
 import struct
 
 
+# The empty one is none.
+LIGHT_GROUPS = ("", "lanterns", "windows")
+
+
 class EditableMap:
     """A .gltf with one external buffer, and files beside it."""
 
@@ -154,6 +158,13 @@ def dim_light(map_, rng):
     number = rng.randrange(len(lights))
     lights[number]["intensity"] *= rng.uniform(0.5, 1.5)
     return f"light {number}"
+
+
+def regroup_light(map_, rng):
+    number = rng.choice(map_.lights())
+    extras = map_.nodes[number].setdefault("extras", {})
+    extras["light_group"] = rng.choice([name for name in LIGHT_GROUPS if name != extras.get("light_group")])
+    return f"{map_.nodes[number].get('name', number)} joins '{extras['light_group']}'"
 
 
 def add_probe(map_, rng):
@@ -317,6 +328,7 @@ EDITS = (
     edit_shared_mesh,
     move_light,
     dim_light,
+    regroup_light,
     add_probe,
     place_solid,
     place_wall,

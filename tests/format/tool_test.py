@@ -94,7 +94,7 @@ class Usage(Tool):
     def test_help_and_version_go_to_stdout(self):
         for word in ("--help", "-h", "help"):
             self.expect(0, word, out="exit status: 0 valid or equal, 1 wrong usage")
-        self.expect(0, "--version", out="sector format 1.2")
+        self.expect(0, "--version", out="sector format 1.3")
 
     def test_full_disk_behind_stdout_is_not_success(self):
         for arguments in (["dump", GOLDEN, "--json"], ["info", GOLDEN], ["validate", GOLDEN]):

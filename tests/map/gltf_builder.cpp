@@ -268,6 +268,8 @@ int GltfBuilder::add_node(const NodeSource& source) {
         node["extras"]["bake_probe"] = source.probe;
     if (source.spacing > 0)
         node["extras"]["bake_spacing"] = source.spacing;
+    if (source.light_group)
+        node["extras"]["light_group"] = *source.light_group;
     return add("nodes", std::move(node));
 }
 

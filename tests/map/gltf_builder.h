@@ -80,6 +80,7 @@ struct NodeSource {
     std::vector<int> children = {};
     std::string name = {}, role = {}, probe = {};  // extras: bake_role, bake_probe
     double spacing = 0;                            // and bake_spacing
+    std::optional<std::string> light_group = {};   // and light_group
 };
 
 using Files = std::map<std::string, FileBytes>;

@@ -36,6 +36,7 @@ struct Yard {
     std::vector<glm::vec4> colours = {{0.2f, 0.4f, 0.1f, 1}, {0.5f, 0.45f, 0.4f, 1}, {0.1f, 0.3f, 0.05f, 1}};
     float crown_m = 1.5f;
     double lamp_candela = 300;
+    std::vector<std::string> lamp_groups = {"", "lanterns"};  // of the first lamps
     static constexpr int block_mesh = 1, room_mesh = 3, pane_mesh = 4, boulder_mesh = 5, wall_mesh = 6;
     static constexpr double kit_m = 8;  // rooms stand on this lattice
 
@@ -103,10 +104,11 @@ struct Yard {
                         .name = thing.name,
                         .role = thing.role,
                         .spacing = thing.spacing});
-        for (const glm::dvec3& lamp : lamps)
+        for (std::size_t n = 0; n < lamps.size(); ++n)
             b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", lamp_candela}}),
-                        .translation = lamp,
-                        .name = "lamp"});
+                        .translation = lamps[n],
+                        .name = "lamp",
+                        .light_group = n < lamp_groups.size() ? lamp_groups[n] : ""});
         for (const glm::dvec3& probe : probes)
             b.add_node({.translation = probe, .name = "probe", .role = "probe"});
         return b;
@@ -129,11 +131,13 @@ float error_of_probe(const Sector& a, const Sector& b, std::size_t p) {
     const auto differ = [&](float x, float y, float range) {
         worst = std::max(worst, std::abs(x - y) / range);
     };
-    const auto irradiance = [p](const Sector& sector, std::size_t c, std::size_t k) {
-        return sector.static_irradiance.empty()
-                   ? 0.0f
-                   : decode_fixed(sector.static_irradiance[p].codes[c][k],
-                                  scale_of_exponent(sector.static_irradiance[p].exponent));
+    const auto irradiance = [p](const std::vector<StaticIrradiance>& light, std::size_t c, std::size_t k) {
+        return light.empty() ? 0.0f
+                             : decode_fixed(light[p].codes[c][k], scale_of_exponent(light[p].exponent));
+    };
+    const auto group = [](const Sector& sector, const std::string& name) {
+        const auto found = std::ranges::find(sector.light_groups, name, &LightGroup::name);
+        return found == sector.light_groups.end() ? std::vector<StaticIrradiance>() : found->irradiance;
     };
     for (std::size_t k = 0; k < basis_count; ++k) {
         differ(decode_fixed(a.probes[p].sky_visibility[k], sky_visibility_scale),
@@ -143,7 +147,11 @@ float error_of_probe(const Sector& a, const Sector& b, std::size_t p) {
                 differ(decode_fixed(a.probes[p].transfer[c][k][i], transfer_scale),
                        decode_fixed(b.probes[p].transfer[c][k][i], transfer_scale),
                        i == 0 ? 0.2821f : 0.9772f);
-            differ(irradiance(a, c, k), irradiance(b, c, k), bake::static_irradiance_range);
+            differ(irradiance(a.static_irradiance, c, k), irradiance(b.static_irradiance, c, k),
+                   bake::static_irradiance_range);
+            for (const char* name : {"lanterns", "windows"})
+                differ(irradiance(group(a, name), c, k), irradiance(group(b, name), c, k),
+                       bake::static_irradiance_range);
         }
     }
     return worst;
@@ -208,7 +216,7 @@ Tally check(const Yard& before, const Yard& after, const bake::Settings& setting
 std::string edit(Yard& yard, std::mt19937& random) {
     std::uniform_real_distribution<double> shift(-4, 4), place(-60, 124), share(0.5, 1);
     Yard::Thing& thing = yard.things[random() % yard.things.size()];
-    switch (random() % 9) {
+    switch (random() % 10) {
         case 0:
         case 1:
             thing.at += glm::dvec3(shift(random), 0, shift(random));
@@ -240,6 +248,9 @@ std::string edit(Yard& yard, std::mt19937& random) {
                 return "nothing";
             yard.lamps[0].x += 0.5;
             return "a lamp moved";
+        case 8:
+            yard.lamp_groups[random() % 2] = random() % 2 == 0 ? "windows" : "lanterns";
+            return "a lamp in another group";
         default:
             yard.probes.push_back({place(random), 2, -place(random)});
             return "a probe added";
@@ -571,6 +582,8 @@ TEST(Inventory, ChangesAreNamed) {
     EXPECT_EQ(change_of([](Yard& y) { y.things.erase(y.things.begin()); }), "block_0 was deleted;");
     EXPECT_EQ(change_of([](Yard& y) { y.things.push_back({"hut", "", 1, {}}); }), "hut was added;");
     EXPECT_EQ(change_of([](Yard& y) { y.lamps[1].x += 1; }), "lamp moved;");
+    EXPECT_EQ(change_of([](Yard& y) { y.lamp_groups[1] = "windows"; }), "lamp changed;");
+    EXPECT_EQ(change_of([](Yard& y) { y.lamp_groups[1] = ""; }), "lamp changed;");
     EXPECT_EQ(change_of([](Yard& y) { y.probes.clear(); }), "probe was deleted;");
 }
 

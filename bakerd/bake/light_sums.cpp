@@ -1,0 +1,52 @@
+#include "bakerd/bake/light_sums.h"
+
+#include <algorithm>
+
+namespace drtv::bake {
+
+void LightSums::pair_blocks() {
+    for (std::size_t k = 0; k < block_count / 2; ++k) {
+        BasisSums pair = blocks_[2 * k];
+        bake::add(pair, blocks_[2 * k + 1]);
+        blocks_[k] = pair;
+    }
+    std::fill(blocks_.begin() + block_count / 2, blocks_.end(), BasisSums{});
+}
+
+void LightSums::add(const BasisWeights& weights, const glm::vec3& light) {
+    bake::add(blocks_[block_], weights, light);
+}
+
+void LightSums::add_direct(const BasisWeights& weights, const glm::vec3& light) {
+    bake::add(direct_, weights, light);
+}
+
+ErrorOfMean LightSums::error(std::uint32_t paths) const {
+    BlockMeans<channel_count * basis_count> lit{};
+    const double paths_of_block = static_cast<double>(paths) / block_count;
+    for (std::size_t k = 0; k < block_count; ++k) {
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            for (std::size_t b = 0; b < basis_count; ++b)
+                lit[k][c * basis_count + b] = blocks_[k][c][b] / paths_of_block;
+        }
+    }
+    return error_of_mean(lit);
+}
+
+StaticLightOfProbe LightSums::light_of(std::uint32_t paths) const {
+    StaticLightOfProbe light;
+    BasisSums scattered{};
+    for (const BasisSums& block : blocks_)
+        bake::add(scattered, block);
+    double direct = 0;
+    for (std::size_t c = 0; c < channel_count; ++c) {
+        for (std::size_t b = 0; b < basis_count; ++b) {
+            light.irradiance[c][b] = static_cast<float>(direct_[c][b] + scattered[c][b] / paths);
+            direct += direct_[c][b] / (channel_count * basis_count);
+        }
+    }
+    light.error = static_cast<float>(error(paths).on_own_scale(direct));
+    return light;
+}
+
+}  // namespace drtv::bake
