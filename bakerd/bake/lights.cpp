@@ -157,10 +157,6 @@ const EmissiveObject::Triangle* EmissiveObject::find(std::uint32_t primitive, st
     return &triangles[numbers[primitive][triangle]];
 }
 
-bool shines(const map::Light& light) {
-    return luminance(light.colour) * light.intensity > 0;
-}
-
 std::size_t emissive_triangles(const map::Map& map) {
     const std::vector<std::size_t> of_mesh = emissive_triangles_of_meshes(map);
     std::size_t count = 0;
@@ -171,7 +167,7 @@ std::size_t emissive_triangles(const map::Map& map) {
 
 StaticLights::StaticLights(std::shared_ptr<const map::Map> map) : map_(std::move(map)) {
     for (const map::Light& light : map_->lights) {
-        if (!shines(light))
+        if (!map::shines(light))
             continue;
         if (light.kind == map::LightKind::directional) {
             suns_.push_back({-light.direction, radiometric(light.colour * light.intensity)});

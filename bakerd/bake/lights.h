@@ -72,9 +72,6 @@ struct EmissiveObject {
     return colour.x + colour.y + colour.z;
 }
 
-// A dark light is none.
-[[nodiscard]] bool shines(const map::Light& light);
-
 // In all objects of the map together.
 [[nodiscard]] std::size_t emissive_triangles(const map::Map& map);
 

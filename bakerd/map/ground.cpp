@@ -197,10 +197,12 @@ tl::expected<std::vector<SectorCoordinate>, std::string> sectors_of(const Map& m
         }
         insert_reached(span, found);
         if (found.size() > max_sectors)
-            return tl::unexpected(fmt::format("the map covers more than {} sectors", max_sectors));
+            break;
     }
     for (const ManualProbe& probe : map.probes)
         found.insert(sector_holding(probe));
+    if (found.size() > max_sectors)
+        return tl::unexpected(fmt::format("the map covers more than {} sectors", max_sectors));
     std::vector<SectorCoordinate> sectors(found.begin(), found.end());
     std::ranges::sort(sectors, [](const SectorCoordinate& a, const SectorCoordinate& b) {
         return std::pair(a.j, a.i) < std::pair(b.j, b.i);

@@ -183,6 +183,11 @@ struct Light {
     std::string name;
 };
 
+// A dark light is none.
+[[nodiscard]] inline bool shines(const Light& light) {
+    return light.intensity > 0 && light.colour != glm::vec3(0);
+}
+
 struct Map {
     std::vector<Texture> textures;
     std::vector<Material> materials;

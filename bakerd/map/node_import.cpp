@@ -221,7 +221,7 @@ class NodeImporter {
 
     // Many exported scenes have one, from the modeller's own view of them.
     void warn_of_sun(const Light& light) const {
-        if (light.kind != LightKind::directional || !(light.intensity > 0) || light.colour == glm::vec3(0))
+        if (light.kind != LightKind::directional || !shines(light))
             return;
         const std::string name = light.name.empty() ? "a light" : fmt::format("the light '{}'", light.name);
         warn(

@@ -110,7 +110,7 @@ Inventory take_inventory(bake::World& world) {
                                    object.name});
     }
     for (const map::Light& light : map.lights) {
-        if (!bake::shines(light))
+        if (!map::shines(light))
             continue;
         const bool sun = light.kind == map::LightKind::directional;
         inventory.items.push_back({sun ? ItemKind::sun : ItemKind::lamp,

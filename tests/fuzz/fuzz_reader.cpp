@@ -23,6 +23,12 @@ void check_view(const drtv::Sector& sector, const std::vector<std::uint8_t>& raw
     for (std::size_t p = 0; p < view.probe_count; ++p)
         require(view.transfer[p] == sector.probes[p].transfer &&
                 view.positions[p].position == sector.probes[p].position);
+    require(view.light_group_names.size() == sector.light_groups.size());
+    for (std::size_t g = 0; g < sector.light_groups.size(); ++g) {
+        require(light_group_name(view, g) == sector.light_groups[g].name);
+        for (std::size_t p = 0; p < view.probe_count; ++p)
+            require(light_group_irradiance_of(view, g, p) == sector.light_groups[g].irradiance[p]);
+    }
     require(view.local_pairs.size() == (sector.local_transfer ? sector.local_transfer->pairs.size() : 0));
     for (std::size_t n = 0; n < view.local_pairs.size(); ++n)
         require(view.local_pairs[n] == sector.local_transfer->pairs[n]);

@@ -23,14 +23,14 @@ void require(bool holds) {
 // The golden file with each of its sections at the end in turn, empty, so that only what hangs on that one
 // changes.
 std::vector<Bytes> files_with_one_last() {
-    const std::vector<Section> sections = sections_of(golden_bytes_1_2());
+    const std::vector<Section> sections = sections_of(golden_bytes_1_3());
     std::vector<Bytes> files;
     for (std::size_t last = 0; last < sections.size(); ++last) {
         std::vector<Section> turned = sections;
         std::rotate(turned.begin() + static_cast<std::ptrdiff_t>(last),
                     turned.begin() + static_cast<std::ptrdiff_t>(last) + 1, turned.end());
         turned.back().stored.clear();
-        files.push_back(with_sections(golden_bytes_1_2(), turned));
+        files.push_back(with_sections(golden_bytes_1_3(), turned));
     }
     return files;
 }
@@ -45,6 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Bytes file = files[data[0] % files.size()];
     const std::size_t at_entry = entry(files.size() - 1), table_end = entry(files.size());
     const bool filtered = get(file, at_entry + at::kind, 2) == 8 && data[1] % 2 == 1;
+    const bool many_sources = data[1] / 2 % 2 == 1;
     const std::uint64_t raw_bytes = get(file, at_entry + at::raw_bytes, 4) +
                                     static_cast<std::uint64_t>(static_cast<std::int8_t>(data[2]) * 24);
     file.resize((file.size() + 15) / 16 * 16);  // where the last section begins
@@ -53,7 +54,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Edit edit(std::move(file));
     edit.u32(at::file_bytes, whole)
         .u8(at_entry + at::codec, filtered ? 2 : 1)
-        .u16(at_entry + at::version, filtered ? 2 : 1);
+        .u16(at_entry + at::version, !filtered      ? 1
+                                     : many_sources ? 3
+                                                    : 2);
     edit.u32(at_entry + at::stored_bytes, size - head_bytes)
         .u32(at_entry + at::raw_bytes, raw_bytes)
         .u64(at_entry + at::section_checksum, XXH64(data + head_bytes, size - head_bytes, 0));

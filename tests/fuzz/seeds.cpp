@@ -34,20 +34,21 @@ void write_sectors(const std::filesystem::path& folder) {
     for (const auto& [name, sector] :
          {std::pair("golden_1_0", golden_sector()), std::pair("golden_1_1", golden_sector_1_1()),
           std::pair("golden_1_2", golden_sector_1_2()), std::pair("random", random_sector_1_2(3, 5)),
+          std::pair("golden_1_3", golden_sector_1_3()), std::pair("random_1_3", random_sector_1_3(3, 5)),
           std::pair("empty", random_sector(4, 0))}) {
         write(folder / (std::string(name) + ".drtv"), write_sector(sector));
         write(folder / (std::string(name) + "_zstd.drtv"), write_sector(sector, {Codec::zstd}));
     }
 }
 
-// As fuzz_zstd reads them: index of the section, filtered or not, 24s of raw bytes more, unused; then the
-// stored bytes.
+// As fuzz_zstd reads them: index of the section, plain or filtered (of version 3), 24s of raw bytes more,
+// unused; then the stored bytes.
 void write_frames(const std::filesystem::path& folder) {
     using namespace drtv::test;
-    const Bytes packed = drtv::write_sector(golden_sector_1_2(), {drtv::Codec::zstd});
-    const std::vector<Section> raw = sections_of(golden_bytes_1_2()), stored = sections_of(packed);
+    const Bytes packed = drtv::write_sector(golden_sector_1_3(), {drtv::Codec::zstd});
+    const std::vector<Section> raw = sections_of(golden_bytes_1_3()), stored = sections_of(packed);
     for (std::size_t n = 0; n < raw.size(); ++n) {
-        Bytes seed = {static_cast<std::uint8_t>(n), static_cast<std::uint8_t>(stored[n].codec == 2 ? 1 : 0),
+        Bytes seed = {static_cast<std::uint8_t>(n), static_cast<std::uint8_t>(stored[n].codec == 2 ? 3 : 0),
                       0, 0};
         const Bytes frame = stored[n].codec == 0 ? zstd_frame(raw[n].stored) : stored[n].stored;
         seed.insert(seed.end(), frame.begin(), frame.end());

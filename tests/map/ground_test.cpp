@@ -124,6 +124,18 @@ TEST(Ground, VegetationAndVolumesAreNone) {
 }
 
 // On a bridge's end, say, beyond the map's ground. On a border as it is placed, in whole units.
+// As many sectors as a map may have, and one more.
+TEST(Ground, SectorsOfHandPlacedProbesCountToo) {
+    map::Map map;
+    for (int n = 0; n < 1 << 20; ++n)
+        map.probes.push_back({{64.0 * (n % 1024) + 1, 64.0 * (n / 1024) + 1, 0}, ""});
+    EXPECT_EQ(map::sectors_of(map)->size(), std::size_t{1} << 20);
+    map.probes.push_back({{-1'048'576, 1'048'576, 0}, ""});
+    EXPECT_EQ(map::sectors_of(map).error(), "the map covers more than 1048576 sectors");
+    map.probes.erase(map.probes.begin(), map.probes.end() - 1);
+    EXPECT_EQ(*map::sectors_of(map), (std::vector<map::SectorCoordinate>{{-16384, 16384}}));
+}
+
 TEST(Ground, AHandPlacedProbeMakesASector) {
     GltfBuilder b;
     b.place(floor_over(0, 0, 64, 64));
