@@ -25,12 +25,6 @@ void add_view(Hasher& hasher, const TextureView& view, const Map& map) {
     hasher.add(plain(view.v_from_uv));
 }
 
-// By its name: the index depends on the files.
-void add_group(Hasher& hasher, std::uint32_t light_group, const Map& map) {
-    if (light_group != no_light_group)
-        hasher.add_sized(std::string_view(map.light_groups[light_group]));
-}
-
 // Puts things in the order of their digests, and the digests too.
 template <class Thing>
 void sort_by(std::vector<Digest>& digests, std::vector<Thing>& things) {
@@ -43,6 +37,11 @@ void sort_by(std::vector<Digest>& digests, std::vector<Thing>& things) {
 }
 
 }  // namespace
+
+void add_light_group(Hasher& hasher, std::uint32_t light_group, const Map& map) {
+    if (light_group != no_light_group)
+        hasher.add_sized(std::string_view(map.light_groups[light_group]));
+}
 
 Digest digest_texture(const Texture& texture) {
     Hasher hasher;
@@ -108,7 +107,7 @@ Digest digest_object(const Object& object, const Map& map) {
     hasher.add(object.role);
     for (glm::length_t column = 0; column < 4; ++column)
         hasher.add(plain(object.world_from_object[column]));
-    add_group(hasher, object.light_group, map);
+    add_light_group(hasher, object.light_group, map);
     return hasher.finish();
 }
 
@@ -134,7 +133,7 @@ Digest digest_light(const Light& light, const Map& map) {
         hasher.add(plain(light.position));
     if (light.kind != LightKind::point)
         hasher.add(plain(light.direction));
-    add_group(hasher, light.light_group, map);
+    add_light_group(hasher, light.light_group, map);
     return hasher.finish();
 }
 

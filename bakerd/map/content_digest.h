@@ -4,6 +4,8 @@
 #include "bakerd/map/digest.h"
 #include "bakerd/map/map.h"
 
+#include <cstdint>
+
 namespace drtv::map {
 
 // Each covers its argument and, by their digests, the things of the map that it names. REQUIRES: those
@@ -15,6 +17,9 @@ namespace drtv::map {
 [[nodiscard]] Digest digest_object(const Object& object, const Map& map);
 [[nodiscard]] Digest digest_volume(const Volume& volume);
 [[nodiscard]] Digest digest_light(const Light& light, const Map& map);
+
+// A thing's group by its name, and nothing where it has none: the index depends on the files.
+void add_light_group(Hasher& hasher, std::uint32_t light_group, const Map& map);
 
 // Brings objects, probes, volumes and lights into an order that depends on content only, and digests it all.
 // REQUIRES: each volume's `probe_name` is empty or a probe's.

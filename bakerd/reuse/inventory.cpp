@@ -1,5 +1,6 @@
 #include "bakerd/reuse/inventory.h"
 
+#include "bakerd/map/content_digest.h"
 #include "bakerd/reuse/record_bytes.h"
 
 #include <algorithm>
@@ -46,11 +47,6 @@ ItemDigest digest_of_interior(const bake::InteriorVolume& interior) {
     return half(hasher.finish());
 }
 
-void add_group(map::Hasher& hasher, std::uint32_t light_group, const map::Map& map) {
-    if (light_group != map::no_light_group)
-        hasher.add_sized(std::string_view(map.light_groups[light_group]));
-}
-
 // Of a light, all but where it is.
 ItemDigest shape_of_light(const map::Light& light, const map::Map& map) {
     map::Hasher hasher;
@@ -59,7 +55,7 @@ ItemDigest shape_of_light(const map::Light& light, const map::Map& map) {
          {light.intensity, light.range_m, light.inner_cone_radians, light.outer_cone_radians})
         hasher.add(value);
     hasher.add(light.direction);
-    add_group(hasher, light.light_group, map);
+    map::add_light_group(hasher, light.light_group, map);
     return half(hasher.finish());
 }
 
@@ -67,7 +63,7 @@ ItemDigest shape_of_light(const map::Light& light, const map::Map& map) {
 ItemDigest shape_of_object(const map::Object& object, const map::Map& map) {
     map::Hasher hasher;
     hasher.add(map.meshes[object.mesh].digest);
-    add_group(hasher, object.light_group, map);
+    map::add_light_group(hasher, object.light_group, map);
     return half(hasher.finish());
 }
 

@@ -135,7 +135,10 @@ def add_huts(builder):
                 bake_probe=probe,
             )
             builder.writer.node(hut, probe, translation=(0, low[1] + 1.3, 0), bake_role="probe")
-            builder.writer.node(hut, f"lamp_{site.name}", translation=(0.4, high[1] - 0.35, -0.3), light=lamp)
+            above_table = (0.4, high[1] - 0.35, -0.3)
+            builder.writer.node(
+                hut, f"lamp_{site.name}", translation=above_table, light=lamp, light_group="huts"
+            )
 
 
 def add_tower(builder):
@@ -161,7 +164,8 @@ def add_pier(builder):
     crate = builder.mesh("crate", lambda: [crate_part()])
     builder.writer.node(pier, "crate", crate, end, bake_role="ignore")
     lantern = builder.writer.light("lantern", (1.0, 0.8, 0.5), 60)
-    builder.writer.node(pier, "lantern", translation=(end[0], 3.2, -1.0), light=lantern)
+    above_deck = (end[0], 3.2, -1.0)
+    builder.writer.node(pier, "lantern", translation=above_deck, light=lantern, light_group="lanterns")
 
 
 def crate_part():

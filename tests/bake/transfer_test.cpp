@@ -176,15 +176,21 @@ TEST(Transfer, TexturesAverageToTheirMean) {
     }
 }
 
-// Blocks tell the truth of their own spread, against many probes whose answer is known: the reported error is
-// right in the mean square within a third.
-TEST(Convergence, ReportedErrorIsTheTrueOne) {
+// Walls, a block and a roof on the ground.
+GltfBuilder yard() {
     GltfBuilder b;
     const int grey = b.add_material({.colour = {0.7f, 0.7f, 0.7f, 1}, .double_sided = true});
     b.place(ground(40), "", grey);
     b.place(box({-6, 0, -1}, {-4, 5, 3}), "", grey);
     b.place(box({2, 0, 1}, {5, 2, 2}), "", grey);
     b.place(box({-3, 3, -8}, {3, 3.2f, 0}), "", grey);
+    return b;
+}
+
+// Blocks tell the truth of their own spread, against many probes whose answer is known: the reported error is
+// right in the mean square within a third.
+TEST(Convergence, ReportedErrorIsTheTrueOne) {
+    GltfBuilder b = yard();
     const auto world = open_world(b);
     const bake::ProbeLight truth = light_at(*world, {0.004f, 0.007f, 1.5f}, 262144);
     for (const std::uint32_t rays : {256u, 2048u}) {
@@ -213,12 +219,7 @@ TEST(Convergence, ReportedErrorIsTheTrueOne) {
 
 // The same of each part on its own scale; of a lamp at night too, which the floor of the error above hides.
 TEST(Convergence, QualityOfEachPartIsTheTrueOne) {
-    GltfBuilder b;
-    const int grey = b.add_material({.colour = {0.7f, 0.7f, 0.7f, 1}, .double_sided = true});
-    b.place(ground(40), "", grey);
-    b.place(box({-6, 0, -1}, {-4, 5, 3}), "", grey);
-    b.place(box({2, 0, 1}, {5, 2, 2}), "", grey);
-    b.place(box({-3, 3, -8}, {3, 3.2f, 0}), "", grey);
+    GltfBuilder b = yard();
     const auto lamp = [&](double candela, std::optional<std::string> group) {
         b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", candela}}),
                     .translation = glm::dvec3(3.5, 1.2, 3),

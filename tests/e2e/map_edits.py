@@ -8,7 +8,7 @@ import struct
 
 
 # The empty one is none.
-LIGHT_GROUPS = ("", "lanterns", "windows")
+LIGHT_GROUPS = ("", "lanterns", "huts")
 
 
 class EditableMap:
