@@ -31,10 +31,8 @@ struct ErrorOfMean {
 
     // Over the mean or `least_mean`.
     [[nodiscard]] double over_mean() const { return error / (mean > least_mean ? mean : least_mean); }
-    // Over the mean, where `exact` more is known without error; 0 where that is none.
-    [[nodiscard]] double on_own_scale(double exact = 0) const {
-        return mean + exact > 0 ? error / (mean + exact) : 0;
-    }
+    // Over the mean; 0 where that is none.
+    [[nodiscard]] double on_own_scale() const { return mean > 0 ? error / mean : 0; }
 };
 
 template <std::size_t count>

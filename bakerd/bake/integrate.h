@@ -21,7 +21,7 @@ using BasisColours = std::array<std::array<float, basis_count>, channel_count>; 
 struct StaticLightOfProbe {
     std::size_t set = 0;
     BasisColours irradiance{};  // E/pi, W/m2, direct and bounced
-    float error = 0;            // standard error over the mean of these
+    float error = 0;  // standard error over the mean of these, at most 1; 1 of light that no path found
 };
 
 struct ProbeLight {

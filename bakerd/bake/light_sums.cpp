@@ -45,7 +45,13 @@ StaticLightOfProbe LightSums::light_of(std::uint32_t paths) const {
             direct += direct_[c][b] / (channel_count * basis_count);
         }
     }
-    light.error = static_cast<float>(error(paths).on_own_scale(direct));
+    const ErrorOfMean found = error(paths);
+    // One path more or less that finds a faint light, and none of those there are may have: blocks of nothing
+    // agree with each other.
+    constexpr double mean_weight = 0.25;  // of a direction, for one side
+    const double least = mean_weight * static_cast<double>(faint_light) / paths;
+    const double off = std::max(found.error, least);
+    light.error = static_cast<float>(off / std::max(found.mean + direct, off));
     return light;
 }
 

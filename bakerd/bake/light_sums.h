@@ -11,6 +11,10 @@
 
 namespace drtv::bake {
 
+// What adds less than this to a path's static light, W/m2, is looked at only so often, and then counts as
+// this much: in the mean of some 1,000 paths it does not show. So lamps far away cost nothing.
+inline constexpr float faint_light = 0.01f;
+
 class LightSums {
   public:
     // As ProbeSums has them.

@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
+#include <map>
 #include <utility>
 
 namespace drtv::bake {
@@ -31,31 +31,44 @@ bool is_lit(const StaticIrradiance& light) {
     return light.codes != LightCodes{};
 }
 
-// Of the groups that shine on any of the probes.
-std::set<std::string> group_names(std::span<const BakedProbe> probes) {
-    std::set<std::string> names;
+// E/pi of its brightest side.
+float brightest_side(const StaticIrradiance& light) {
+    std::int16_t most = 0;
+    for (const auto& channel : light.codes)
+        most = std::max(most, *std::ranges::max_element(channel));
+    return decode_fixed(most, scale_of_exponent(light.exponent));
+}
+
+// What groups bring to the probe that they shine on most. Those that bring no probe as much as
+// `least_group_light` are left out: whether a few rays find some of their light is chance.
+std::map<std::string, float> groups_that_shine(std::span<const BakedProbe> probes) {
+    std::map<std::string, float> most;
     for (const BakedProbe& probe : probes) {
         for (const BakedGroup& group : probe.groups) {
-            if (is_lit(group.irradiance))
-                names.insert(group.name);
+            float& of_group = most[group.name];
+            of_group = std::max(of_group, brightest_side(group.irradiance));
         }
     }
-    return names;
+    std::erase_if(most, [](const auto& group) { return group.second < least_group_light; });
+    return most;
 }
 
 tl::expected<void, std::string> store_groups(std::span<const BakedProbe> probes, Sector& sector) {
-    const std::set<std::string> names = group_names(probes);
-    if (names.size() > max_light_groups) {
+    const std::map<std::string, float> groups = groups_that_shine(probes);
+    if (groups.size() > max_light_groups) {
+        std::vector<std::string> shown;
+        for (const auto& [name, most] : groups)
+            shown.push_back(fmt::format("{} ({:.2g} W/m2)", name, most));
         return tl::unexpected(fmt::format(
             "sector ({}, {}): {} light groups shine on its probes, a file holds at most {}: {}. Give "
-            "lamps that are switched together one light_group, or give them a range",
+            "lights that are switched together one light_group",
             sector.i,
             sector.j,
-            names.size(),
+            groups.size(),
             max_light_groups,
-            fmt::join(names, ", ")));
+            fmt::join(shown, ", ")));
     }
-    for (const std::string& name : names) {
+    for (const auto& [name, most] : groups) {
         LightGroup& group = sector.light_groups.emplace_back();
         std::vector<float>& errors = sector.quality->group_errors.emplace_back();
         group.name = name;

@@ -25,6 +25,9 @@ struct ProbeCounts {
 
 inline constexpr int min_static_exponent = -64;
 
+// A sector's file holds a light group that brings any of its probes so much E/pi, W/m2: a tenth of full moon.
+inline constexpr float least_group_light = 1e-5f;
+
 // What a light group brings to a probe.
 struct BakedGroup {
     std::string name;

@@ -12,10 +12,6 @@
 namespace drtv::bake {
 namespace {
 
-// What adds less than this to a path's static light, W/m2, is looked at only so often, and then counts as
-// this much: in the mean of some 1,000 paths it does not show. So lamps far away cost nothing.
-constexpr float faint = 0.01f;
-
 constexpr float inv_pi = std::numbers::inv_pi_v<float>;
 
 // The probability per steradian with which a path would go on from the surface in a direction of that cosine
@@ -64,7 +60,7 @@ void StaticLight::add_at_surface(const Path& path, const trace::Hit& hit, const 
     const float max_share =
         brightest(path.throughput * (surface.albedo + surface.transmitted)) * (4 * inv_pi);
     const Roulette roulette{rounded_unit_float(hashed(task_.shift[1], path.number, 2 * k)),
-                            faint / max_share};
+                            faint_light / max_share};
     const std::optional<Incident> incident = next_event_.draw(point, light_sample(path.number, k), roulette);
     if (incident)
         add_incident(path, hit, surface, *incident);
@@ -129,11 +125,11 @@ std::array<double, numbers_per_light> StaticLight::light_sample(std::uint32_t pa
 // Russian roulette: faint light is dropped, or raised by as much as it is seldom kept.
 bool StaticLight::survives(glm::vec3& light, std::uint32_t path_number, std::uint32_t draw) const {
     const float most = brightest(light);
-    if (most >= faint)
+    if (most >= faint_light)
         return true;
-    if (rounded_unit_float(hashed(task_.shift[1], path_number, draw)) * faint >= most)
+    if (rounded_unit_float(hashed(task_.shift[1], path_number, draw)) * faint_light >= most)
         return false;
-    light *= faint / most;
+    light *= faint_light / most;
     return true;
 }
 

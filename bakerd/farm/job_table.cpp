@@ -69,11 +69,13 @@ std::string first_failure(Connection& connection, const JobRow& job) {
     if (!statement.executeStep())
         return "";
     const JobSectorRow sector = read_row<JobSectorRow>(statement).row;
-    return fmt::format("{} of {} sectors failed; sector ({}, {}): {}",
+    // Most sentences say which one.
+    const std::string which = fmt::format("sector ({}, {})", sector.sector.i, sector.sector.j);
+    const bool named = sector.error.starts_with(which);
+    return fmt::format("{} of {} sectors failed; {}{}",
                        job.sectors_failed,
                        job.sectors_total,
-                       sector.sector.i,
-                       sector.sector.j,
+                       named ? "" : which + ": ",
                        sector.error);
 }
 

@@ -84,6 +84,8 @@ class NodeImporter {
                  node.children,
                  {-1, world_from_node, pending.purpose, pending.group_node, pending.hidden});
         }
+        for (const std::string& sentence : misplaced_light_groups(model_))
+            warn(state_.map, state_.document.at(sentence));
         groups_.tell_unused([&](int node, const std::string& group) {
             warn(state_.map,
                  state_.document.at(

@@ -60,16 +60,37 @@ tl::expected<std::string, std::string> read_light_group(const tinygltf::Value& v
     };
     if (std::ranges::any_of(name, is_control))
         return tl::unexpected(std::string("light_group has a control character in its name"));
+    if (name.starts_with(' ') || name.ends_with(' '))
+        return tl::unexpected(fmt::format("light_group '{}' begins or ends with a space", name));
     if (name.size() > max_light_group_name)
         return tl::unexpected(fmt::format(
             "light_group '{}' has {} bytes, over the limit of {}", name, name.size(), max_light_group_name));
     return name;
 }
 
+bool says_light_group(const tinygltf::Value& extras) {
+    return extras.IsObject() && extras.Has("light_group");
+}
+
 }  // namespace
 
 bool has_light_group(const tinygltf::Node& node) {
-    return node.extras.IsObject() && node.extras.Has("light_group");
+    return says_light_group(node.extras);
+}
+
+std::vector<std::string> misplaced_light_groups(const tinygltf::Model& model) {
+    std::vector<std::string> sentences;
+    const auto tell_of = [&](const auto& things, const char* kind) {
+        for (const auto& thing : things) {
+            if (says_light_group(thing.extras))
+                sentences.push_back(fmt::format(
+                    "the {} '{}' says light_group, which counts on nodes alone", kind, thing.name));
+        }
+    };
+    tell_of(model.lights, "light");
+    tell_of(model.meshes, "mesh");
+    tell_of(model.materials, "material");
+    return sentences;
 }
 
 tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePurpose& purpose) {

@@ -99,6 +99,14 @@ std::map<placement::Position, float, bake::ByPlace> changed_shares(const Earlier
     return shares;
 }
 
+// Whether the sector has a light group that the file has not. What is faint everywhere is in no file: then it
+// is not known what the group brings to the probes that were taken over.
+bool has_other_groups(const Sector& sector, const Sector& file) {
+    return !std::ranges::all_of(sector.light_groups, [&](const LightGroup& group) {
+        return std::ranges::find(file.light_groups, group.name, &LightGroup::name) != file.light_groups.end();
+    });
+}
+
 class Recording {
   public:
     Recording(bake::World& world, map::SectorCoordinate sector, const bake::Settings& settings)
@@ -115,6 +123,10 @@ class Recording {
         const bake::Given given = earlier != nullptr ? given_by(*earlier) : bake::Given{};
         const auto watch = [&]() -> bake::RayWatch& { return recorders_.of_this_thread(); };
         auto baked = bake::bake_sector(world_, sector_, settings_, given, watch);
+        if (baked && earlier != nullptr && has_other_groups(baked->sector, earlier->sector)) {
+            earlier = nullptr;
+            baked = bake::bake_sector(world_, sector_, settings_, {}, watch);
+        }
         if (!baked)
             return tl::unexpected(baked.error());
         Rebake result{std::move(*baked), {}, 0};

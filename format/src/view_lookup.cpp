@@ -115,6 +115,14 @@ StaticIrradiance static_irradiance_of(const SectorView& sector, std::size_t p) {
     return {sector.static_irradiance[p], sector.static_exponents[p]};
 }
 
+std::optional<std::size_t> find_light_group(const SectorView& sector, std::string_view name) {
+    for (std::size_t g = 0; g < sector.light_group_names.size(); ++g) {
+        if (light_group_name(sector, g) == name)
+            return g;
+    }
+    return std::nullopt;
+}
+
 std::string_view light_group_name(const SectorView& sector, std::size_t g) {
     return sector.light_group_names[g].data();
 }

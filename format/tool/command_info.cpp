@@ -1,6 +1,7 @@
 #include "arguments.h"
 #include "commands.h"
 #include "files.h"
+#include "quality_parts.h"
 
 #include <drtv/read.h>
 
@@ -78,24 +79,14 @@ std::string shown_spread(std::vector<float> errors) {
     return text.data();
 }
 
-void print_errors(const std::string& name, std::vector<float> errors) {
-    std::printf("  %-18s %s\n", name.c_str(), shown_spread(std::move(errors)).c_str());
-}
-
 void print_quality(const Sector& sector) {
     const Quality& quality = *sector.quality;
     const auto count = [&](bool ProbeQuality::*flag) {
         return std::ranges::count(quality.probes, true, flag);
     };
-    const auto errors = [&](float ProbeQuality::*error) {
-        std::vector<float> values;
-        for (const ProbeQuality& probe : quality.probes)
-            values.push_back(probe.*error);
-        return values;
-    };
     std::printf(
         "quality         %td dark, %td moved out of a solid, %td short of the error asked; %u cells in "
-        "solids, %u that see no probe\n",
+        "solids or under ground, %u that see no probe of theirs\n",
         count(&ProbeQuality::dark),
         count(&ProbeQuality::moved),
         count(&ProbeQuality::budget_ended),
@@ -103,15 +94,23 @@ void print_quality(const Sector& sector) {
         quality.blind_cells);
     if (quality.probes.empty())
         return;
-    std::printf("errors over their own mean: median, 95 %%, largest\n");
-    print_errors("transfer", errors(&ProbeQuality::transfer_error));
-    print_errors("sky visibility", errors(&ProbeQuality::visibility_error));
-    if (!sector.static_irradiance.empty())
-        print_errors("static light", errors(&ProbeQuality::static_error));
-    for (std::size_t g = 0; g < quality.group_errors.size(); ++g) {
-        const bool named = quality.group_errors.size() == sector.light_groups.size();
-        print_errors(named ? "group " + sector.light_groups[g].name : "a light group",
-                     quality.group_errors[g]);
+    std::printf(
+        "errors          over their own mean, of the probes that get such light: median, 95 %%, largest\n");
+    std::vector<PartQuality> names = quality_parts(sector, 0);
+    std::vector<std::vector<float>> errors(names.size());
+    for (std::size_t p = 0; p < quality.probes.size(); ++p) {
+        const std::vector<PartQuality> parts = quality_parts(sector, p);
+        for (std::size_t n = 0; n < parts.size(); ++n) {
+            if (parts[n].mean > 0)
+                errors[n].push_back(parts[n].error);
+        }
+    }
+    for (std::size_t n = 0; n < names.size(); ++n) {
+        if (!errors[n].empty())
+            std::printf("  %-17s %s, of %zu probes\n",
+                        names[n].name.c_str(),
+                        shown_spread(errors[n]).c_str(),
+                        errors[n].size());
     }
 }
 

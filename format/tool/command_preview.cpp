@@ -86,11 +86,12 @@ int run_preview(Arguments arguments) {
         complain(error);
         return exit_unreadable;
     }
-    std::printf("%s: %zu x %zu pixels, %zu sectors, %zu probes\n",
+    std::printf("%s: %zu x %zu pixels, %zu sector%s, %zu probes\n",
                 parsed->out.c_str(),
                 image->width,
                 image->height,
                 files->size(),
+                files->size() == 1 ? "" : "s",
                 picture.dots.size());
     return exit_valid;
 }

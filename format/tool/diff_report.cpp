@@ -23,6 +23,11 @@ void print_changes(const Changes& changes) {
     }
 }
 
+void print_groups(const std::vector<std::string>& names, const char* side) {
+    for (const std::string& name : names)
+        std::printf("; light group '%s' only in the %s", name.c_str(), side);
+}
+
 void print_sector(const SectorPlace& place, const SectorDiff& diff, std::size_t probes) {
     std::printf("sector %s: %zu of %zu probes changed, %zu added, %zu removed; %zu grid cells",
                 text(place).c_str(),
@@ -43,6 +48,8 @@ void print_sector(const SectorPlace& place, const SectorDiff& diff, std::size_t 
     tell(diff.interiors, "interiors differ");
     tell(diff.quality, "the quality differs");
     tell(diff.grid_place, "the grid's place differs");
+    print_groups(diff.groups_only_first, "first");
+    print_groups(diff.groups_only_second, "second");
     std::printf("\n");
     print_changes(diff.changes);
 }
@@ -96,6 +103,8 @@ void append_sector(JsonWriter& json, const SectorPlace& place, const SectorDiff&
     json.member("interiors", diff.interiors);
     json.member("quality", diff.quality);
     json.member("grid_place", diff.grid_place);
+    json.key("light_groups_only_first").array(diff.groups_only_first);
+    json.key("light_groups_only_second").array(diff.groups_only_second);
     append_changes(json, diff.changes);
     json.end_object();
 }

@@ -1,5 +1,7 @@
 #include "dot_colour.h"
 
+#include "quality_parts.h"
+
 #include <drtv/relight.h>
 
 #include <algorithm>
@@ -49,10 +51,9 @@ Float3 traffic_light(float share) {
 Float3 error_colour(const Sector& sector, std::size_t p) {
     if (!sector.quality)
         return unknown_colour;
-    const ProbeQuality& probe = sector.quality->probes[p];
-    float largest = std::max({probe.transfer_error, probe.visibility_error, probe.static_error});
-    for (const std::vector<float>& errors : sector.quality->group_errors)
-        largest = std::max(largest, errors[p]);
+    float largest = 0;
+    for (const PartQuality& part : quality_parts(sector, p))
+        largest = std::max(largest, part.seen_error());
     return traffic_light(largest / red_error);
 }
 

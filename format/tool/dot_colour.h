@@ -8,8 +8,8 @@
 namespace drtv::tool {
 
 // What colours the probes. The last two go from green to red, grey where the file has no quality: the largest
-// of a probe's errors, and the share of its paths that met the back of a one-sided surface, which tells holes
-// in a map and walls that face the wrong way.
+// of a probe's errors (PartQuality::seen_error), and the share of its paths that met the back of a one-sided
+// surface, which tells holes in a map and walls that face the wrong way.
 enum class DotQuantity { relit, sky, errors, back_hits };
 
 // Linear. `sky_visibility`: the average of the three upward directions. REQUIRES: p < sector.probes.size().

@@ -66,6 +66,10 @@ const std::vector<StaticIrradiance>& group_of(const Sector& sector, const std::s
     return group == sector.light_groups.end() ? none : group->irradiance;
 }
 
+bool has_group(const Sector& sector, const std::string& name) {
+    return std::ranges::find(sector.light_groups, name, &LightGroup::name) != sector.light_groups.end();
+}
+
 // Of both sectors, one of each.
 std::set<std::string> group_names(const Sector& first, const Sector& second) {
     std::set<std::string> names;
@@ -97,6 +101,12 @@ class Differ {
         diff_.convergence = first_.convergence != second_.convergence;
         diff_.interiors = first_.interiors != second_.interiors;
         diff_.quality = first_.quality != second_.quality;
+        for (const std::string& name : group_names_) {
+            if (!has_group(second_, name))
+                diff_.groups_only_first.push_back(name);
+            else if (!has_group(first_, name))
+                diff_.groups_only_second.push_back(name);
+        }
         return std::move(diff_);
     }
 
@@ -274,8 +284,9 @@ bool SectorDiff::equal() const {
     const bool same_probes = removed.empty() && added == 0 && changed == 0;
     const bool same_pairs = pairs_added == 0 && pairs_removed == 0;
     const bool same_grid = cells == 0 && !grid_place;
-    return same_probes && same_pairs && same_grid && !settings && !statistics && !convergence && !interiors &&
-           !quality;
+    const bool same_groups = groups_only_first.empty() && groups_only_second.empty();
+    return same_groups && same_probes && same_pairs && same_grid && !settings && !statistics &&
+           !convergence && !interiors && !quality;
 }
 
 SectorDiff diff_sectors(const Sector& first, const Sector& second) {

@@ -56,6 +56,9 @@ struct SectorDiff {
     bool convergence = false;
     bool interiors = false;
     bool quality = false;
+    // Light groups that only one of the two has, by name.
+    std::vector<std::string> groups_only_first;
+    std::vector<std::string> groups_only_second;
     bool grid_place = false;
     std::array<Change, quantity_count> changes;
 

@@ -116,6 +116,37 @@ TEST(LightGroups, TogetherTheyAreAllLight) {
     EXPECT_NEAR(difference / sum, 0, 0.01);
 }
 
+// Light that only some rays find does not decide which groups a file has.
+TEST(LightGroups, OneThatIsFaintEverywhereIsLeftOut) {
+    GltfBuilder b;
+    b.place(ground(40), "", b.add_material({.colour = {0.6f, 0.5f, 0.4f, 1}}));
+    for (const auto& [candela, group] : {std::pair(1000.0, "bright"), std::pair(0.001, "faint")})
+        b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", candela}}),
+                    .translation = glm::dvec3(20, 5, -20),
+                    .light_group = group});
+    const Sector sector = baked(b);
+    ASSERT_EQ(sector.light_groups.size(), 1u);
+    EXPECT_EQ(sector.light_groups[0].name, "bright");
+    EXPECT_EQ(sector.quality->group_errors.size(), 1u);
+}
+
+// What no path found is not certain.
+TEST(LightGroups, ErrorOfLightThatNoPathFoundIsOne) {
+    GltfBuilder b;
+    const int grey = b.add_material({.colour = {0.6f, 0.5f, 0.4f, 1}});
+    b.place(ground(40), "", grey);
+    b.place(room({-4, 0, -3}, {0, 3, 3}), "", grey);
+    b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 10}}),
+                .translation = glm::dvec3(20, 5, -20),
+                .light_group = "outside"});
+    const auto world = open_world(b);
+    const bake::ProbeLight inside = light_at(*world, {-2, 0, 1}, 256);
+    EXPECT_EQ(inside.groups.at(0).irradiance, bake::BasisColours{});
+    EXPECT_EQ(inside.groups.at(0).error, 1);
+    EXPECT_EQ(inside.static_error, 0) << "there is no lamp without a group";
+    EXPECT_LT(light_at(*world, {18, 19, 1}, 256).groups.at(0).error, 1);
+}
+
 TEST(LightGroups, AreInheritedAndAnEmptyNameEndsThem) {
     GltfBuilder b;
     b.place(ground(40), "", b.add_material({.colour = {0.6f, 0.5f, 0.4f, 1}}));
@@ -160,10 +191,12 @@ TEST(LightGroups, MoreThanAFileHoldsAreNamed) {
     EXPECT_TRUE(bake::bake_sector(*world_with(8, false), {0, 0}, settings));
     const auto failed = bake::bake_sector(*world_with(9, false), {0, 0}, settings);
     ASSERT_FALSE(failed);
-    EXPECT_EQ(failed.error(),
-              "sector (0, 0): 9 light groups shine on its probes, a file holds at most 8: lamps 0, lamps 1, "
-              "lamps 2, lamps 3, lamps 4, lamps 5, lamps 6, lamps 7, lamps 8. Give lamps that are switched "
-              "together one light_group, or give them a range");
+    EXPECT_TRUE(failed.error().starts_with(
+        "sector (0, 0): 9 light groups shine on its probes, a file holds at most 8: lamps 0 (0.0"))
+        << failed.error();
+    EXPECT_TRUE(failed.error().ends_with(" W/m2). Give lights that are switched together one light_group"))
+        << failed.error();
+    EXPECT_NE(failed.error().find("lamps 8 (0.0"), std::string::npos) << failed.error();
     // Those that bring nothing do not count.
     const auto far = bake::bake_sector(*world_with(12, true), {0, 0}, settings);
     ASSERT_TRUE(far) << far.error();
@@ -183,6 +216,8 @@ TEST(LightGroups, ANameThatCannotBeIsRefusedAndOneOfNoUseIsWarnedOf) {
                                                       std::string(64, 'a') +
                                                       "' has 64 bytes, over the limit of 63");
     EXPECT_EQ(with(7).error(), "map.gltf: node 1 ('lantern'): light_group must be a string");
+    EXPECT_EQ(with("lanterns ").error(),
+              "map.gltf: node 1 ('lantern'): light_group 'lanterns ' begins or ends with a space");
     EXPECT_EQ(with("a\nb").error(),
               "map.gltf: node 1 ('lantern'): light_group has a control character in its name");
 
@@ -194,6 +229,24 @@ TEST(LightGroups, ANameThatCannotBeIsRefusedAndOneOfNoUseIsWarnedOf) {
     ASSERT_EQ(map->warnings.size(), 1u);
     EXPECT_EQ(map->warnings[0],
               "map.gltf: node 1 ('shade'): light_group 'lanterns' is of no use: nothing there shines");
+}
+
+TEST(LightGroups, InExtrasOfALightAMeshOrAMaterialAreWarnedOf) {
+    GltfBuilder b;
+    b.place(ground(40), "", b.add_material({.colour = {0.1f, 0.3f, 0.1f, 1}, .name = "grass"}));
+    b.add_node({.light = b.add_light({{"type", "point"}, {"name", "bulb"}})});
+    b.json["materials"][0]["extras"]["light_group"] = "lanterns";
+    b.json["meshes"][0]["extras"]["light_group"] = "lanterns";
+    b.json["meshes"][0]["name"] = "meadow";
+    b.json["extensions"]["KHR_lights_punctual"]["lights"][0]["extras"]["light_group"] = "lanterns";
+    const auto map = b.import();
+    ASSERT_TRUE(map) << map.error();
+    EXPECT_EQ(map->warnings,
+              (std::vector<std::string>{
+                  "map.gltf: the light 'bulb' says light_group, which counts on nodes alone",
+                  "map.gltf: the mesh 'meadow' says light_group, which counts on nodes alone",
+                  "map.gltf: the material 'grass' says light_group, which counts on nodes alone"}));
+    EXPECT_TRUE(map->light_groups.empty());
 }
 
 TEST(LightGroups, ContentFollowsTheName) {

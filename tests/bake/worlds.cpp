@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -40,9 +41,11 @@ GltfBuilder clutter(const Clutter& size) {
     material["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 5000;
     b.add_node(
         {.mesh = b.add_mesh(box({-1, 2, -1}, {1, 3, 1}), glow), .translation = glm::dvec3(20, 0, -10)});
+    constexpr std::array<const char*, 3> groups = {"", "lanterns", "windows"};
     for (int n = 0; n < size.lamps; ++n) {
         b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 400 + 10 * n}}),
-                    .translation = at_random(3)});
+                    .translation = at_random(3),
+                    .light_group = groups[static_cast<std::size_t>(n) % groups.size()]});
     }
     const int spot = b.add_light(
         {{"type", "spot"}, {"intensity", 900}, {"spot", {{"outerConeAngle", 0.7}, {"innerConeAngle", 0.3}}}});

@@ -23,8 +23,8 @@ struct Clutter {
 };
 
 // All that a sector can hold, at random places: turned blocks, crowns of leaves, two blocks in one place, a
-// glowing one, point lights and a spot light. No number of it comes from the C library's functions, so it is
-// the same on every CPU.
+// glowing one, point lights, two in three of them in one of two light groups, and a spot light. No number of
+// it comes from the C library's functions, so it is the same on every CPU.
 [[nodiscard]] GltfBuilder clutter(const Clutter& size);
 
 // Light at a world position in metres; rays and bounces as given, reach 512 m.

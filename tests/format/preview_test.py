@@ -43,7 +43,7 @@ class Preview(Tool):
                 "--quantity",
                 quantity,
             )
-            self.assertIn("128 x 128 pixels, 1 sectors, 2 probes", stdout)
+            self.assertIn("128 x 128 pixels, 1 sector, 2 probes", stdout)
             width, height, rows = self.read_png(out)
             self.assertEqual((width, height), (128, 128))
             self.assertGreater(len(set(rows)), 8)

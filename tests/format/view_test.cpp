@@ -74,8 +74,10 @@ void expect_equal_interiors(const SectorView& view, const std::vector<Interior>&
 
 void expect_equal_groups(const SectorView& view, const std::vector<LightGroup>& groups) {
     ASSERT_EQ(view.light_group_names.size(), groups.size());
+    EXPECT_EQ(find_light_group(view, "no such group"), std::nullopt);
     for (std::size_t g = 0; g < groups.size(); ++g) {
         EXPECT_EQ(light_group_name(view, g), groups[g].name);
+        EXPECT_EQ(find_light_group(view, groups[g].name), g);
         for (std::size_t p = 0; p < view.probe_count; ++p)
             EXPECT_EQ(light_group_irradiance_of(view, g, p), groups[g].irradiance[p]);
     }

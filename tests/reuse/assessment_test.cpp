@@ -513,6 +513,32 @@ TEST(Assessment, LampsAndProbesOfTheNextSectorCount) {
     EXPECT_GE(check(yard, probe, settings_of_yard(64, false), 1 / 32.0f, "probe").rebakes, 2);
 }
 
+// A light group that was too faint for the file is not known of the probes that are taken over: once another
+// probe gets more of it, all are baked.
+TEST(Rebake, ALightGroupThatAppearsIsThatOfAFullBake) {
+    Yard yard(3, true);
+    yard.lamp_groups = {"lanterns", "lanterns"};
+    yard.lamp_candela = 1e-6;
+    const trace::FloatMode float_mode;
+    const bake::Settings settings = settings_of_yard(64, false);
+    const reuse::Rebake was = reuse::bake_and_record(*open_world(yard.build()), {0, 0}, settings).value();
+    ASSERT_TRUE(was.baked.sector.light_groups.empty());
+    yard.lamp_candela = 300;
+    const auto world = open_world(yard.build());
+    // As if every second probe held.
+    reuse::Assessment assessment;
+    assessment.verdict = reuse::Verdict::rebake;
+    assessment.flips.resize(was.footprint.solid_tests.size());
+    for (std::size_t p = 0; p < was.baked.sector.probes.size(); ++p)
+        assessment.probe_bounds.push_back(p % 2 == 0 ? 0.0f : 1.0f);
+    const reuse::EarlierBake earlier{was.baked.sector, was.footprint, assessment};
+    const reuse::Rebake is = reuse::bake_and_record(*world, {0, 0}, settings, &earlier).value();
+    ASSERT_EQ(is.baked.sector.light_groups.size(), 1u);
+    EXPECT_EQ(encoded(is.baked.sector),
+              encoded(reuse::bake_and_record(*world, {0, 0}, settings)->baked.sector));
+    EXPECT_EQ(is.probes_reused, 0u);
+}
+
 // The light of a long thing that shines at one end alone stands far from its middle.
 TEST(Assessment, AnEmissiveEndCounts) {
     const auto beam = [](double shift) {

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -87,14 +88,19 @@ ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::u
 // sector.probe_count.
 [[nodiscard]] Float3 position_m(const SectorView& sector, std::size_t p);
 
-// The probe that lights a world position, by the grid (SPEC.md, section 5.5); `no_probe` where the cell has
-// none: then nothing is added. What is beside, above or below the grid takes the nearest cell.
+// The probe that lights a world position outside of all interiors (find_interior is asked first), by the grid
+// (SPEC.md, section 5.5); `no_probe` where the cell has none: then nothing is added. What is beside, above or
+// below the grid takes the nearest cell.
 [[nodiscard]] std::uint8_t find_probe(const SectorView& sector, const Float3& world_m);
 
 // REQUIRES: the sector has static irradiance, p < sector.probe_count.
 [[nodiscard]] StaticIrradiance static_irradiance_of(const SectorView& sector, std::size_t p);
 
-// The group's name, by its index in light_group_names; it points into the file's bytes. REQUIRES: g <
+// The index of the light group of that name in this sector; each sector has its own order. Nothing where the
+// group brings no light to its probes.
+[[nodiscard]] std::optional<std::size_t> find_light_group(const SectorView& sector, std::string_view name);
+
+// The group's name, by its index; it points into the file's bytes. REQUIRES: g <
 // sector.light_group_names.size().
 [[nodiscard]] std::string_view light_group_name(const SectorView& sector, std::size_t g);
 

@@ -28,8 +28,8 @@ using BasisColours = std::array<Float3, basis_count>;
                                    const DistantLight& sky,
                                    const DistantLight& sun);
 
-// Adds the light of the map's own lights, which no time of day changes; of a light group, times what the game
-// makes of it at the moment.
+// Adds the light of the map's own lights, which no time of day changes. `tint` scales the channels of a light
+// group: 1 is its lights as they are in the map, 0 is off.
 void add_static_irradiance(BasisColours& colours,
                            const StaticIrradiance& light,
                            const Float3& tint = {1, 1, 1});
