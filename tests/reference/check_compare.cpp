@@ -116,18 +116,32 @@ class Comparison {
                                                           estimate.transfer[c][b][i],
                                                           estimate.transfer_error[c][b][i], indices(c, b)));
                 }
-                if (sector_.static_irradiance.empty())
+                if (sector_.static_irradiance.empty() && sector_.light_groups.empty())
                     continue;
-                const StaticIrradiance& light = sector_.static_irradiance[number];
-                result.statics.push_back(compared(light.codes[c][b], scale_of_exponent(light.exponent),
-                                                  estimate.static_irradiance[c][b],
-                                                  estimate.static_error[c][b], indices(c, b)));
+                result.statics.push_back(
+                    all_static(number, c, b, estimate.static_irradiance[c][b], estimate.static_error[c][b]));
             }
             for (auto& numbers : result.transfer)
                 set_scale(numbers, first, result.transfer[0], first);
             if (!result.statics.empty())
                 set_scale(result.statics, first, result.statics, first);
         }
+    }
+
+    // Of all light groups together: the reference knows none.
+    [[nodiscard]] Compared all_static(std::size_t number, std::size_t c, std::size_t b, double reference,
+                                      double error) const {
+        Compared all{0, reference, error, 0, indices(c, b)};
+        const auto add = [&](const StaticIrradiance& light) {
+            const Compared part = compared(light.codes[c][b], scale_of_exponent(light.exponent), 0, 0, "");
+            all.product += part.product;
+            all.error = std::hypot(all.error, part.error);
+        };
+        if (!sector_.static_irradiance.empty())
+            add(sector_.static_irradiance[number]);
+        for (const drtv::LightGroup& group : sector_.light_groups)
+            add(group.irradiance[number]);
+        return all;
     }
 
     void add_local(const Scene& scene, std::size_t number, ProbeResult& result) const {

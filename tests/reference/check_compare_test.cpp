@@ -70,6 +70,7 @@ Sector honest_sector(const map::Map& map) {
         for (std::size_t b = 0; b < 3; ++b)
             probe.sky_visibility[b] =
                 encode_fixed(static_cast<float>(estimate.sky_visibility[b]), sky_visibility_scale);
+        receiver.sources.resize(local_mask_bytes(3));
         for (std::size_t s = 0; s < 3; ++s) {
             if ((p == 0 && s == 2) || (p == 2 && s == 1))
                 continue;
@@ -123,6 +124,16 @@ TEST_F(ReferenceCheck, FileThatLiesIsOff) {
     sector_ = honest_sector(map_);
     ++sector_.local_transfer->sources[2].exponent;
     EXPECT_EQ(off_in(sector_).find("R Y0"), 0u) << off_in(sector_);
+}
+
+TEST_F(ReferenceCheck, LightGroupsCountTogether) {
+    sector_.light_groups = {{"lanterns", sector_.static_irradiance}};
+    EXPECT_EQ(off_in(sector_), "S,") << "twice the light";
+    for (StaticIrradiance& light : sector_.static_irradiance)
+        light.codes = {};
+    EXPECT_EQ(off_in(sector_), "");
+    sector_.static_irradiance.clear();
+    EXPECT_EQ(off_in(sector_), "");
 }
 
 TEST(ReferenceCheckFigures, AreThoseOfASmallSum) {
