@@ -107,7 +107,7 @@ void print_quality(const Sector& sector) {
     }
     for (std::size_t n = 0; n < names.size(); ++n) {
         if (!errors[n].empty())
-            std::printf("  %-17s %s, of %zu probes\n",
+            std::printf("  %-18s %s, of %zu probes\n",
                         names[n].name.c_str(),
                         shown_spread(errors[n]).c_str(),
                         errors[n].size());

@@ -665,8 +665,8 @@ class Show(Tool):
             "light group     lanterns, up to 6.75561e+15 (E/pi)\n",
             "quality         1 dark, 1 moved out of a solid, 1 short of the error asked; "
             "100 cells in solids or under ground, 7 that see no probe of theirs\n",
-            "  transfer          0.00781, 0.5, 0.5, of 3 probes\n",
-            "  group 'lanterns'  1.5, 1.5, 1.5, of 2 probes\n",
+            "  transfer           0.00781, 0.5, 0.5, of 3 probes\n",
+            "  group 'lanterns'   1.5, 1.5, 1.5, of 2 probes\n",
             "  group 'nächtliche Fenster' 0.0625, 0.0625, 0.0625, of 2 probes\n",
         ):
             self.assertIn(line, stdout)
