@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <vector>
 
 namespace drtv::test {
 namespace {
@@ -242,6 +244,81 @@ TEST(StaticLight, MapWithoutLightsHasNone) {
     const bake::ProbeLight light = light_at(*world, {1, 1, 1}, 256);
     EXPECT_EQ(light.static_irradiance, bake::BasisColours{});
     EXPECT_EQ(light.shadow_rays, 0u);
+}
+
+// 10 W/sr from 5 m above: on the axis each cone lets all through, whatever it says of its angles.
+TEST(StaticLight, SpotConesOfEveryKindAreWholeOnTheirAxis) {
+    struct Case {
+        const char* name;
+        Json spot;
+        double off_axis;  // at 30 degrees
+    };
+    const auto fall_off = [](double inner, double outer) {
+        const double share = (std::cos(pi / 6) - std::cos(outer)) / (std::cos(inner) - std::cos(outer));
+        return std::pow(std::clamp(share, 0.0, 1.0), 2);
+    };
+    const std::vector<Case> cases = {
+        {"equal", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}, 0},
+        {"right angle", {{"innerConeAngle", 0}, {"outerConeAngle", 1.5707963705062866}}, fall_off(0, pi / 2)},
+        {"defaults", Json::object(), fall_off(0, pi / 4)},
+        {"inner only", {{"innerConeAngle", 0.1}}, fall_off(0.1, pi / 4)}};
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.name);
+        GltfBuilder b;
+        b.place(ground(60), "", b.add_material({.colour = {0, 0, 0, 1}}));
+        b.add_node({.light = b.add_light({{"type", "spot"}, {"intensity", 6830}, {"spot", c.spot}}),
+                    .translation = glm::dvec3(32, 6.5, -32),
+                    .rotation = glm::dvec4(-std::sin(pi / 4), 0, 0, std::cos(pi / 4))});
+        const auto world = open_world(b);
+        const bake::ProbeLight on_axis = light_at(*world, {32, 32, 1.5f}, 64);
+        for (std::size_t basis = 0; basis < 3; ++basis)
+            EXPECT_NEAR(on_axis.static_irradiance[0][basis], 10.0 / 25 * 0.57735 / pi, 1e-4);
+        const double aside = 5 * std::tan(pi / 6), distance = std::hypot(5, aside);
+        const bake::ProbeLight off_axis = light_at(*world, {32 + static_cast<float>(aside), 32, 1.5f}, 64);
+        for (std::size_t basis = 0; basis < 3; ++basis) {
+            const auto& axis = transfer_basis[basis];
+            const double cosine =
+                (-aside * static_cast<double>(axis[0]) + 5 * static_cast<double>(axis[2])) / distance;
+            EXPECT_NEAR(off_axis.static_irradiance[0][basis],
+                        10 / (distance * distance) * c.off_axis * std::max(0.0, cosine) / pi, 1e-4);
+        }
+    }
+    GltfBuilder b;
+    b.place(ground(60));
+    b.add_node({.light = b.add_light({{"type", "spot"}, {"spot", {{"outerConeAngle", 1.6}}}})});
+    EXPECT_NE(b.import().error().find("cone angles 0 and 1.6 do not lie one in the other and below pi/2"),
+              std::string::npos);
+}
+
+// A box whose faces look inwards, and one of double-sided faces that look outwards, are the same room.
+TEST(StaticLight, DoubleSidedWallsAreAsBrightAsOnesThatLookInwards) {
+    const auto lit = [](bool inward) {
+        GltfBuilder b;
+        b.place(ground(60, -0.5f), "", b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}));
+        const int walls = b.add_material({.colour = {0.8f, 0.8f, 0.8f, 1}, .double_sided = !inward});
+        const glm::vec3 low(28, 0, -36), high(36, 4, -28);
+        b.place(inward ? room(low, high) : box(low, high), "", walls);
+        add_light(b, point_light(300), {32, 32, 3});
+        const auto world = open_world(b);
+        std::vector<bake::BasisColours> light;
+        for (const float dx : {-2.0f, 0.0f, 2.0f}) {
+            for (const float dy : {-2.0f, 0.0f, 2.0f})
+                light.push_back(light_at(*world, {32 + dx, 32 + dy, 1.5f}, 4096).static_irradiance);
+        }
+        return light;
+    };
+    const auto inward = lit(true), double_sided = lit(false);
+    double sum = 0, difference = 0;
+    for (std::size_t p = 0; p < inward.size(); ++p) {
+        for (std::size_t basis = 0; basis < basis_count; ++basis) {
+            const float expected = inward[p][0][basis], found = double_sided[p][0][basis];
+            EXPECT_GT(expected, 0.001f);
+            EXPECT_NEAR(found, expected, 0.04f * expected) << p << " " << basis;
+            sum += static_cast<double>(expected);
+            difference += static_cast<double>(found - expected);
+        }
+    }
+    EXPECT_NEAR(difference / sum, 0, 0.005);
 }
 
 }  // namespace
