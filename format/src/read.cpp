@@ -244,9 +244,10 @@ void copy_sector(ByteSpan file, const Sections& sections, Sector& sector) {
 
 ReadStatus read_sector(ByteSpan bytes, Sector& sector) {
     SectionTable table;
-    Unpacked unpacked;
+    UnpackedSections unpacked;
+    const Unpacking unpacking{unpacked, unpack_section};
     Sections sections;
-    if (ReadStatus status = load_sections(bytes, table, &unpacked, sections); !status.ok())
+    if (ReadStatus status = load_sections(bytes, table, &unpacking, sections); !status.ok())
         return status;
     Sector read;
     copy_sector(bytes, sections, read);

@@ -1,13 +1,10 @@
 #include "sections.h"
 
 #include "bytes.h"
-#include "local_filter.h"
 #include "read_failure.h"
 #include "sentence.h"
 
 #include <drtv/sector.h>
-
-#include <zstd.h>
 
 #include <algorithm>
 
@@ -77,28 +74,12 @@ bool is_known(const SectionEntry& entry, std::uint16_t minor) {
     return minor >= layout::minor_with_light_sections && entry.version == 1;
 }
 
-// One Zstandard frame, whole and alone: no skippable frame, none of a format before 0.8, nothing behind it.
-bool is_one_frame(ByteSpan stored) {
-    return stored.size() >= 4 && load_u32(stored, 0) == ZSTD_MAGICNUMBER &&
-           ZSTD_findFrameCompressedSize(stored.data(), stored.size()) == stored.size();
-}
-
-// The frame's bytes; false where it has more than `out` holds, or is none. `out` is cut to what there was.
-bool unpack_frame(ByteSpan stored, std::vector<std::uint8_t>& out) {
-    const std::size_t size = ZSTD_decompress(out.data(), out.size(), stored.data(), stored.size());
-    if (ZSTD_isError(size))
-        return false;
-    out.resize(size);
-    return true;
-}
-
 struct SectionSource {
     ByteSpan file;
     const SectionEntry& entry;
     std::size_t probe_count;
 
     [[nodiscard]] ByteSpan stored() const { return file.subspan(entry.offset, entry.stored_bytes); }
-    [[nodiscard]] bool filtered() const { return static_cast<Codec>(entry.codec) == Codec::filtered; }
 
     template <class... Parts>
     [[nodiscard]] ReadStatus refuse(const Parts&... parts) const {
@@ -136,31 +117,7 @@ ReadStatus check_codec(const SectionSource& source) {
     return source.refuse(" of version ", entry.version, " has the unknown codec ", entry.codec);
 }
 
-ReadStatus unpack(const SectionSource& source, std::vector<std::uint8_t>& raw) {
-    const ByteSpan stored = source.stored();
-    const std::size_t raw_bytes = source.entry.raw_bytes;
-    const bool filtered = source.filtered();
-    if (!is_one_frame(stored))
-        return source.refuse(": its ", stored.size(), " bytes are not one whole zstd frame");
-    raw.resize(filtered ? max_filtered_bytes(raw_bytes) : raw_bytes);
-    const bool unpacked = unpack_frame(stored, raw);
-    const bool right_size = filtered || raw.size() == raw_bytes;
-    if (!unpacked || !right_size)
-        return source.refuse(": its zstd frame does not decode to ", raw_bytes, " bytes");
-    if (!filtered)
-        return {};
-    const std::vector<std::uint8_t> planes = std::move(raw);
-    const std::size_t max_sources = Local::max_sources(source.entry.version);
-    if (unfilter_local(planes, source.probe_count, max_sources, raw_bytes, raw))
-        return {};
-    return source.refuse(": the ",
-                         planes.size(),
-                         " bytes of its zstd frame are not a filtered section of ",
-                         raw_bytes,
-                         " bytes");
-}
-
-ReadStatus decode(const SectionSource& source, Unpacked* unpacked, Section& section) {
+ReadStatus decode(const SectionSource& source, const Unpacking* unpacking, Section& section) {
     const SectionEntry& entry = source.entry;
     if (ReadStatus status = check_raw_size(source); !status.ok())
         return status;
@@ -174,14 +131,15 @@ ReadStatus decode(const SectionSource& source, Unpacked* unpacked, Section& sect
         section.raw = source.stored();
         return {};
     }
-    if (unpacked == nullptr) {
+    if (unpacking == nullptr) {
         return fail(ReadError::compressed,
                     entry.offset,
                     section_name(entry),
                     " is compressed, unpack the file first");
     }
-    std::vector<std::uint8_t>& raw = (*unpacked)[entry.kind];
-    if (ReadStatus status = unpack(source, raw); !status.ok())
+    std::vector<std::uint8_t>& raw = unpacking->sections[entry.kind];
+    const PackedSection packed{source.stored(), entry, source.probe_count, Local::max_sources(entry.version)};
+    if (ReadStatus status = unpacking->unpack(packed, raw); !status.ok())
         return status;
     section.raw = raw;
     return {};
@@ -202,7 +160,7 @@ ReadStatus check_required(const SectionEntry* entry, std::uint16_t kind) {
 
 }  // namespace
 
-ReadStatus load_sections(ByteSpan file, SectionTable& table, Unpacked* unpacked, Sections& sections) {
+ReadStatus load_sections(ByteSpan file, SectionTable& table, const Unpacking* unpacking, Sections& sections) {
     if (ReadStatus status = load_section_table(file, table); !status.ok())
         return status;
     const std::uint16_t minor = load_u16(file, layout::header::minor);
@@ -218,7 +176,7 @@ ReadStatus load_sections(ByteSpan file, SectionTable& table, Unpacked* unpacked,
             continue;
         }
         Section& section = sections.of_kind[k];
-        if (ReadStatus status = decode({file, *entry, probe_count}, unpacked, section); !status.ok())
+        if (ReadStatus status = decode({file, *entry, probe_count}, unpacking, section); !status.ok())
             return status;
         if (ReadStatus status = check_content(kind, section, probe_count); !status.ok())
             return status;

@@ -4,6 +4,7 @@
 #include <drtv/read.h>
 #include <drtv/sector.h>
 
+#include "codec.h"
 #include "layout.h"
 #include "section_table.h"
 
@@ -36,14 +37,18 @@ struct Sections {
     [[nodiscard]] std::span<const std::uint8_t> raw(SectionKind kind) const { return of(kind).raw; }
 };
 
-// Where the decoded bytes of compressed sections lie.
-using Unpacked = std::array<std::vector<std::uint8_t>, known_kinds>;
+// How compressed sections are decoded (codec.h), and where their bytes lie then.
+using UnpackedSections = std::array<std::vector<std::uint8_t>, known_kinds>;
+struct Unpacking {
+    UnpackedSections& sections;
+    ReadStatus (*unpack)(const PackedSection& packed, std::vector<std::uint8_t>& raw);
+};
 
-// Checks the whole file by SPEC.md section 6, and gives its table too. With `unpacked` null, a compressed
+// Checks the whole file by SPEC.md section 6, and gives its table too. With `unpacking` null, a compressed
 // section fails. Allocates for compressed sections and for messages only.
 ReadStatus load_sections(std::span<const std::uint8_t> file,
                          SectionTable& table,
-                         Unpacked* unpacked,
+                         const Unpacking* unpacking,
                          Sections& sections);
 
 // The sector that they hold. REQUIRES: load_sections gave them for this file.

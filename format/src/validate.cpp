@@ -75,9 +75,10 @@ Report validate_sector(std::span<const std::uint8_t> bytes, const ValidateOption
     assert(options.max_findings > 0);
     Findings findings(options);
     SectionTable table;
-    Unpacked unpacked;
+    UnpackedSections unpacked;
+    const Unpacking unpacking{unpacked, unpack_section};
     Sections sections;
-    if (const ReadStatus status = load_sections(bytes, table, &unpacked, sections); !status.ok()) {
+    if (const ReadStatus status = load_sections(bytes, table, &unpacking, sections); !status.ok()) {
         findings.add(
             issue_of(status.error),
             status.offset,

@@ -1,7 +1,5 @@
 #include <drtv/view.h>
 
-#include <drtv/write.h>
-
 #include "bytes.h"
 #include "section_headers.h"
 #include "sections.h"
@@ -91,14 +89,6 @@ ReadStatus open_sector(ByteSpan bytes, SectorView& view) {
     }
     view = view_sections(bytes, sections);
     return {};
-}
-
-ReadStatus unpack_sector(ByteSpan bytes, std::vector<std::uint8_t>& raw_file) {
-    Sector sector;
-    ReadStatus status = read_sector(bytes, sector);
-    if (status.ok())
-        raw_file = write_sector(sector);
-    return status;
 }
 
 }  // namespace drtv

@@ -2,11 +2,9 @@
 
 #include "bytes.h"
 #include "checksum.h"
+#include "codec.h"
 #include "layout.h"
-#include "local_filter.h"
 #include "raw_sections.h"
-
-#include <zstd.h>
 
 #include <algorithm>
 #include <cassert>
@@ -15,31 +13,14 @@
 namespace drtv {
 namespace {
 
-// High enough to be worth the time once, low enough to stay under a millisecond a sector. Local transfer is
-// most of a file that has it: from level 15 on zstd gives each stretch of it its own statistics.
-constexpr int zstd_level = 12;
-constexpr int zstd_level_of_local_transfer = 15;
-
 struct StoredSection {
     SectionEntry entry;
     ByteVector bytes;
 };
 
-// One frame; nothing where it is no smaller than `limit`.
-ByteVector pack(const ByteVector& bytes, int level, std::size_t limit) {
-    ByteVector packed(ZSTD_compressBound(bytes.size()));
-    const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), level);
-    const bool smaller = !ZSTD_isError(size) && size < limit;
-    packed.resize(smaller ? size : 0);
-    return packed;
-}
-
 // Leaves the section raw where it would not become smaller.
 void compress(StoredSection& section, bool filtered, std::size_t probe_count) {
-    const ByteVector& raw = section.bytes;
-    ByteVector packed = filtered
-                            ? pack(filter_local(raw, probe_count), zstd_level_of_local_transfer, raw.size())
-                            : pack(raw, zstd_level, raw.size());
+    ByteVector packed = pack_section(section.bytes, filtered, probe_count);
     if (packed.empty())
         return;
     section.bytes = std::move(packed);

@@ -23,7 +23,7 @@ enum class ReadError : std::uint8_t {
     checksum_mismatch,    // header or section bytes were changed
     missing_section,      // a required section is not there
     bad_section,          // a section's content breaks its rule
-    compressed,           // open_sector only: a section is not raw
+    compressed,           // a section is not raw: of open_sector, and of a library without zstd
     misaligned,           // open_sector only: the bytes do not start at a multiple of 16
 };
 
