@@ -1,4 +1,4 @@
-// Offsets and sizes of format version 1, as SPEC.md tabulates them.
+// Offsets and sizes of format version 1, as SPEC.md tabulates them. Long because each section has its table.
 #pragma once
 
 #include <drtv/sector.h>
@@ -57,13 +57,53 @@ inline constexpr std::size_t checksum = 24;
     return header_bytes + n * entry_bytes;
 }
 
-inline constexpr std::size_t bake_bytes = 48;
-inline constexpr std::size_t position_bytes = 8;        // a probe
-inline constexpr std::size_t sky_visibility_bytes = 8;  // a probe
-inline constexpr std::size_t transfer_bytes = 96;       // a probe
-inline constexpr std::size_t grid_header_bytes = 16;
-inline constexpr std::size_t grid_bytes = grid_header_bytes + 4096;
-inline constexpr std::size_t statistics_bytes = 40;
+namespace bake {
+inline constexpr std::size_t rays = 0;
+inline constexpr std::size_t bounces = 4;
+inline constexpr std::size_t reach = 8;
+inline constexpr std::size_t min_distance = 12;
+inline constexpr std::size_t settings_key = 16;
+inline constexpr std::size_t bytes = 48;
+}  // namespace bake
+namespace position {  // of a probe
+inline constexpr std::size_t axes = 0;
+inline constexpr std::size_t kind = 6;
+inline constexpr std::size_t reserved = 7;
+inline constexpr std::size_t bytes = 8;
+}  // namespace position
+inline constexpr std::size_t sky_visibility_bytes = 8;  // of a probe
+inline constexpr std::size_t transfer_bytes = 96;       // of a probe
+namespace grid {
+inline constexpr std::size_t z_origin = 0;
+inline constexpr std::size_t cell_height = 4;
+inline constexpr std::size_t reserved = 8;
+inline constexpr std::size_t cells = 16;
+inline constexpr std::size_t bytes = cells + grid_cell_count;
+}  // namespace grid
+namespace statistics {
+inline constexpr std::size_t candidates = 0;
+inline constexpr std::size_t moved_out = 4;
+inline constexpr std::size_t dropped_in_solid = 8;
+inline constexpr std::size_t removed_by_volume = 12;
+inline constexpr std::size_t thinned = 16;
+inline constexpr std::size_t used_distance = 20;
+inline constexpr std::size_t rays = 24;
+inline constexpr std::size_t back_hits = 32;
+inline constexpr std::size_t bytes = 40;
+}  // namespace statistics
+namespace convergence {
+inline constexpr std::size_t error_asked = 0;
+inline constexpr std::size_t error_median = 4;
+inline constexpr std::size_t error_p95 = 8;
+inline constexpr std::size_t error_max = 12;
+inline constexpr std::size_t paths_least = 16;
+inline constexpr std::size_t paths_most = 20;
+inline constexpr std::size_t local_bounces = 24;
+inline constexpr std::size_t local_rays = 28;
+inline constexpr std::size_t static_rays = 32;
+inline constexpr std::size_t local_transfer_rays = 40;
+inline constexpr std::size_t bytes = 48;
+}  // namespace convergence
 
 [[nodiscard]] constexpr std::size_t align(std::size_t offset) {
     return (offset + alignment - 1) / alignment * alignment;
@@ -72,7 +112,6 @@ inline constexpr std::size_t statistics_bytes = 40;
 inline constexpr std::size_t light_codes_bytes = 24;  // i16 [3][4]
 inline constexpr std::size_t static_irradiance_bytes =
     light_codes_bytes + 1;  // a probe; all codes, then all exponents
-inline constexpr std::size_t convergence_bytes = 48;
 
 // Local transfer: header, sources, receivers, masks, codes; each part starts at a multiple of 16.
 struct LocalTransferLayout {
@@ -83,6 +122,15 @@ struct LocalTransferLayout {
     static constexpr std::size_t header_bytes = 16;
     static constexpr std::size_t source_bytes = 4;
     static constexpr std::size_t receiver_bytes = 8;
+    // Within a source's entry.
+    static constexpr std::size_t di = 0;
+    static constexpr std::size_t dj = 1;
+    static constexpr std::size_t probe = 2;
+    static constexpr std::size_t source_exponent = 3;
+    // Within a receiver's.
+    static constexpr std::size_t first_pair = 0;
+    static constexpr std::size_t receiver_exponent = 4;
+    static constexpr std::size_t receiver_reserved = 5;
 
     // Of a section of that version.
     [[nodiscard]] static constexpr std::size_t max_sources(std::uint16_t section_version) {
@@ -200,7 +248,10 @@ struct QualityLayout {
     static constexpr std::size_t header_bytes = 16;
     static constexpr std::size_t probe_bytes = 24;
     static constexpr std::size_t error_bytes = 4;
-    // Within a probe's entry; three errors stand at its start.
+    // Within a probe's entry; its errors stand at its start.
+    static constexpr std::size_t transfer_error = 0;
+    static constexpr std::size_t visibility_error = 4;
+    static constexpr std::size_t static_error = 8;
     static constexpr std::size_t error_count = 3;
     static constexpr std::size_t paths = 12;
     static constexpr std::size_t back_hits = 16;

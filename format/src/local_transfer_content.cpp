@@ -90,8 +90,8 @@ ReadStatus check_header(const Content& content) {
 
 ReadStatus check_source(const Content& content, std::size_t s) {
     const std::size_t at = Local::source_at(s);
-    const std::int8_t di = load_i8(content.raw, at);
-    const std::int8_t dj = load_i8(content.raw, at + 1);
+    const std::int8_t di = load_i8(content.raw, at + Local::di);
+    const std::int8_t dj = load_i8(content.raw, at + Local::dj);
     if (std::abs(di) > 1 || std::abs(dj) > 1) {
         return refuse(content.section,
                       at,
@@ -106,11 +106,11 @@ ReadStatus check_source(const Content& content, std::size_t s) {
     // How many probes a neighbour has is not known here.
     const bool own = di == 0 && dj == 0;
     const std::size_t probes = own ? content.probes : max_probes;
-    const std::uint8_t probe = content.raw[at + 2];
+    const std::uint8_t probe = content.raw[at + Local::probe];
     if (probe < probes)
         return {};
     return refuse(content.section,
-                  at + 2,
+                  at + Local::probe,
                   "local source ",
                   s,
                   " is probe ",
@@ -150,9 +150,10 @@ std::size_t find_bit(ByteSpan mask, std::size_t start) {
 ReadStatus check_receiver(const Content& content, std::size_t p, std::size_t& pairs) {
     const auto& [section, raw, probes, sources, said_pairs, mask_bytes, parts] = content;
     const std::size_t at = parts.receiver_at(p);
-    if (!all_zero(raw.subspan(at + 5, 3)))
-        return refuse(section, at + 5, "local receiver ", p, ": its reserved bytes are not zero");
-    const auto first_pair = load_u32(raw, at);
+    const std::size_t reserved_at = at + Local::receiver_reserved;
+    if (!all_zero(raw.subspan(reserved_at, Local::receiver_bytes - Local::receiver_reserved)))
+        return refuse(section, reserved_at, "local receiver ", p, ": its reserved bytes are not zero");
+    const auto first_pair = load_u32(raw, at + Local::first_pair);
     if (first_pair != pairs) {
         return refuse(section,
                       at,

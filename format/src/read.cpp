@@ -15,14 +15,16 @@ namespace drtv {
 namespace {
 
 using Triples = std::vector<std::array<std::uint16_t, 3>>;
+using Local = layout::LocalTransferLayout;
 
 BakeRecord read_bake(ByteSpan raw) {
+    namespace at = layout::bake;
     BakeRecord bake;
-    bake.rays = load_u32(raw, 0);
-    bake.bounces = load_u32(raw, 4);
-    bake.reach_m = load_f32(raw, 8);
-    bake.min_distance_m = load_f32(raw, 12);
-    std::memcpy(bake.settings_key.data(), raw.data() + 16, bake.settings_key.size());
+    bake.rays = load_u32(raw, at::rays);
+    bake.bounces = load_u32(raw, at::bounces);
+    bake.reach_m = load_f32(raw, at::reach);
+    bake.min_distance_m = load_f32(raw, at::min_distance);
+    std::memcpy(bake.settings_key.data(), raw.data() + at::settings_key, bake.settings_key.size());
     return bake;
 }
 
@@ -30,9 +32,9 @@ void read_positions(ByteSpan raw, std::vector<Probe>& probes) {
     std::size_t at = 0;
     for (Probe& probe : probes) {
         for (std::size_t axis = 0; axis < 3; ++axis)
-            probe.position[axis] = load_u16(raw, at + 2 * axis);
-        probe.kind = static_cast<ProbeKind>(raw[at + 6]);
-        at += layout::position_bytes;
+            probe.position[axis] = load_u16(raw, at + layout::position::axes + 2 * axis);
+        probe.kind = static_cast<ProbeKind>(raw[at + layout::position::kind]);
+        at += layout::position::bytes;
     }
 }
 
@@ -49,21 +51,22 @@ void read_transfer(ByteSpan raw, std::vector<Probe>& probes) {
 }
 
 void read_grid(ByteSpan raw, Grid& grid) {
-    grid.z_origin_units = load_i32(raw, 0);
-    grid.cell_height_units = load_u32(raw, 4);
-    std::memcpy(grid.cells.data(), raw.data() + layout::grid_header_bytes, grid.cells.size());
+    grid.z_origin_units = load_i32(raw, layout::grid::z_origin);
+    grid.cell_height_units = load_u32(raw, layout::grid::cell_height);
+    std::memcpy(grid.cells.data(), raw.data() + layout::grid::cells, grid.cells.size());
 }
 
 Statistics read_statistics(ByteSpan raw) {
+    namespace at = layout::statistics;
     Statistics s;
-    s.candidates = load_u32(raw, 0);
-    s.moved_out = load_u32(raw, 4);
-    s.dropped_in_solid = load_u32(raw, 8);
-    s.removed_by_volume = load_u32(raw, 12);
-    s.thinned = load_u32(raw, 16);
-    s.used_distance_m = load_f32(raw, 20);
-    s.rays = load_u64(raw, 24);
-    s.back_hits = load_u64(raw, 32);
+    s.candidates = load_u32(raw, at::candidates);
+    s.moved_out = load_u32(raw, at::moved_out);
+    s.dropped_in_solid = load_u32(raw, at::dropped_in_solid);
+    s.removed_by_volume = load_u32(raw, at::removed_by_volume);
+    s.thinned = load_u32(raw, at::thinned);
+    s.used_distance_m = load_f32(raw, at::used_distance);
+    s.rays = load_u64(raw, at::rays);
+    s.back_hits = load_u64(raw, at::back_hits);
     return s;
 }
 
@@ -77,23 +80,22 @@ void read_static_irradiance(ByteSpan raw, std::vector<StaticIrradiance>& probes)
 
 LocalSource read_local_source(ByteSpan raw, std::size_t at) {
     LocalSource source;
-    source.di = load_i8(raw, at);
-    source.dj = load_i8(raw, at + 1);
-    source.probe = raw[at + 2];
-    source.exponent = load_i8(raw, at + 3);
+    source.di = load_i8(raw, at + Local::di);
+    source.dj = load_i8(raw, at + Local::dj);
+    source.probe = raw[at + Local::probe];
+    source.exponent = load_i8(raw, at + Local::source_exponent);
     return source;
 }
 
 LocalReceiver read_local_receiver(ByteSpan raw, std::size_t at, ByteSpan mask) {
     LocalReceiver receiver;
-    receiver.first_pair = load_u32(raw, at);
-    receiver.exponent = load_i8(raw, at + 4);
+    receiver.first_pair = load_u32(raw, at + Local::first_pair);
+    receiver.exponent = load_i8(raw, at + Local::receiver_exponent);
     receiver.sources.assign(mask.begin(), mask.end());
     return receiver;
 }
 
 void read_local_transfer(ByteSpan raw, std::size_t probe_count, LocalTransfer& local) {
-    using Local = layout::LocalTransferLayout;
     const LocalTransferCounts counts = load_local_transfer_counts(raw);
     const Local parts = counts.parts(probe_count);
     const std::size_t mask_bytes = local_mask_bytes(counts.sources);
@@ -112,17 +114,18 @@ void read_local_transfer(ByteSpan raw, std::size_t probe_count, LocalTransfer& l
 }
 
 Convergence read_convergence(ByteSpan raw) {
+    namespace at = layout::convergence;
     Convergence c;
-    c.error_asked = load_f32(raw, 0);
-    c.error_median = load_f32(raw, 4);
-    c.error_p95 = load_f32(raw, 8);
-    c.error_max = load_f32(raw, 12);
-    c.paths_least = load_u32(raw, 16);
-    c.paths_most = load_u32(raw, 20);
-    c.local_bounces = load_u32(raw, 24);
-    c.local_rays = load_u32(raw, 28);
-    c.static_rays = load_u64(raw, 32);
-    c.local_transfer_rays = load_u64(raw, 40);
+    c.error_asked = load_f32(raw, at::error_asked);
+    c.error_median = load_f32(raw, at::error_median);
+    c.error_p95 = load_f32(raw, at::error_p95);
+    c.error_max = load_f32(raw, at::error_max);
+    c.paths_least = load_u32(raw, at::paths_least);
+    c.paths_most = load_u32(raw, at::paths_most);
+    c.local_bounces = load_u32(raw, at::local_bounces);
+    c.local_rays = load_u32(raw, at::local_rays);
+    c.static_rays = load_u64(raw, at::static_rays);
+    c.local_transfer_rays = load_u64(raw, at::local_transfer_rays);
     return c;
 }
 
@@ -180,9 +183,9 @@ void read_light_groups(ByteSpan raw, std::size_t probe_count, std::vector<LightG
 ProbeQuality read_probe_quality(ByteSpan entry) {
     using Layout = layout::QualityLayout;
     ProbeQuality probe;
-    probe.transfer_error = load_f32(entry, 0);
-    probe.visibility_error = load_f32(entry, 4);
-    probe.static_error = load_f32(entry, 8);
+    probe.transfer_error = load_f32(entry, Layout::transfer_error);
+    probe.visibility_error = load_f32(entry, Layout::visibility_error);
+    probe.static_error = load_f32(entry, Layout::static_error);
     probe.paths = load_u32(entry, Layout::paths);
     probe.back_hits = load_u32(entry, Layout::back_hits);
     const unsigned flags = entry[Layout::flags];

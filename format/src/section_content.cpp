@@ -19,15 +19,18 @@ ReadStatus check_finite(const Section& section, std::size_t at, const char* mess
 }
 
 ReadStatus check_bake(const Section& section) {
-    if (ReadStatus status = check_finite(section, 8, "bake section: the reach is not finite"); !status.ok())
+    if (ReadStatus status =
+            check_finite(section, layout::bake::reach, "bake section: the reach is not finite");
+        !status.ok())
         return status;
-    return check_finite(section, 12, "bake section: the minimal distance is not finite");
+    return check_finite(
+        section, layout::bake::min_distance, "bake section: the minimal distance is not finite");
 }
 
 ReadStatus check_positions(const Section& section, std::size_t probe_count) {
     for (std::size_t p = 0; p < probe_count; ++p) {
-        const std::size_t kind_at = p * layout::position_bytes + 6;
-        const std::size_t reserved_at = kind_at + 1;
+        const std::size_t kind_at = p * layout::position::bytes + layout::position::kind;
+        const std::size_t reserved_at = p * layout::position::bytes + layout::position::reserved;
         const std::uint8_t kind = section.raw[kind_at];
         if (kind > static_cast<std::uint8_t>(ProbeKind::manual))
             return refuse(section, kind_at, "probe ", p, ": kind ", kind, " is unknown");
@@ -38,22 +41,28 @@ ReadStatus check_positions(const Section& section, std::size_t probe_count) {
 }
 
 ReadStatus check_grid(const Section& section) {
+    namespace at = layout::grid;
     const ByteSpan raw = section.raw;
-    const std::int64_t z_origin = load_i32(raw, 0);
+    const std::int64_t z_origin = load_i32(raw, at::z_origin);
     if (std::abs(z_origin) > max_z_origin_units)
-        return refuse(section, 0, "grid section: z origin ", z_origin, " is over the limit of 2^30");
-    const auto cell_height = load_u32(raw, 4);
-    if (cell_height == 0 || cell_height > max_cell_height_units) {
         return refuse(
-            section, 4, "grid section: the cell height ", cell_height, " is not between 1 and 2^24");
+            section, at::z_origin, "grid section: z origin ", z_origin, " is over the limit of 2^30");
+    const auto cell_height = load_u32(raw, at::cell_height);
+    if (cell_height == 0 || cell_height > max_cell_height_units) {
+        return refuse(section,
+                      at::cell_height,
+                      "grid section: the cell height ",
+                      cell_height,
+                      " is not between 1 and 2^24");
     }
-    if (load_u64(raw, 8) != 0)
-        return refuse(section, 8, "grid section: reserved bytes are not zero");
+    if (load_u64(raw, at::reserved) != 0)
+        return refuse(section, at::reserved, "grid section: reserved bytes are not zero");
     return {};
 }
 
 ReadStatus check_convergence(const Section& section) {
-    for (std::size_t at = 0; at < 16; at += 4) {
+    namespace c = layout::convergence;
+    for (const std::size_t at : {c::error_asked, c::error_median, c::error_p95, c::error_max}) {
         if (ReadStatus status = check_finite(section, at, "convergence section: an error is not finite");
             !status.ok())
             return status;
@@ -171,7 +180,9 @@ ReadStatus check_content(SectionKind kind, const Section& section, std::size_t p
         case SectionKind::grid:
             return check_grid(section);
         case SectionKind::statistics:
-            return check_finite(section, 20, "statistics section: the used distance is not finite");
+            return check_finite(section,
+                                layout::statistics::used_distance,
+                                "statistics section: the used distance is not finite");
         case SectionKind::local_transfer:
             return check_local_transfer_content(section, probe_count);
         case SectionKind::convergence:

@@ -32,21 +32,21 @@ SizeRange raw_size(SectionKind kind, std::uint16_t version, std::size_t probe_co
     const auto exactly = [](std::size_t bytes) { return SizeRange{bytes, bytes}; };
     switch (kind) {
         case SectionKind::bake:
-            return exactly(layout::bake_bytes);
+            return exactly(layout::bake::bytes);
         case SectionKind::positions:
-            return exactly(probe_count * layout::position_bytes);
+            return exactly(probe_count * layout::position::bytes);
         case SectionKind::sky_visibility:
             return exactly(probe_count * layout::sky_visibility_bytes);
         case SectionKind::transfer:
             return exactly(probe_count * layout::transfer_bytes);
         case SectionKind::grid:
-            return exactly(layout::grid_bytes);
+            return exactly(layout::grid::bytes);
         case SectionKind::statistics:
-            return exactly(layout::statistics_bytes);
+            return exactly(layout::statistics::bytes);
         case SectionKind::static_irradiance:
             return exactly(probe_count * layout::static_irradiance_bytes);
         case SectionKind::convergence:
-            return exactly(layout::convergence_bytes);
+            return exactly(layout::convergence::bytes);
         case SectionKind::local_transfer:
             return {Local::header_bytes, max_local_bytes(version, probe_count)};
         case SectionKind::light_groups:

@@ -28,7 +28,7 @@ void check_grid(const SectionCheck& check) {
     for (std::size_t cell = 0; cell < grid_cell_count; ++cell) {
         const std::uint8_t named = sector.grid.cells[cell];
         const auto add = [&](const Issue& issue, const auto& message) {
-            const std::uint64_t offset = check.place.at(layout::grid_header_bytes + cell);
+            const std::uint64_t offset = check.place.at(layout::grid::cells + cell);
             const auto path = [&] { return "grid.cells" + index(cell); };
             check.findings.add(issue, offset, named, path, message);
         };

@@ -95,9 +95,9 @@ void check_quality(const SectionCheck& check) {
     for (std::size_t p = 0; p < quality.probes.size(); ++p) {
         const ProbeQuality& probe = quality.probes[p];
         const std::uint64_t at = parts.probe_at(p);
-        check_error(probe.transfer_error, at, p, "transfer_error");
-        check_error(probe.visibility_error, at + 4, p, "visibility_error");
-        check_error(probe.static_error, at + 8, p, "static_error");
+        check_error(probe.transfer_error, at + parts.transfer_error, p, "transfer_error");
+        check_error(probe.visibility_error, at + parts.visibility_error, p, "visibility_error");
+        check_error(probe.static_error, at + parts.static_error, p, "static_error");
     }
     for (std::size_t g = 0; g < quality.group_errors.size(); ++g) {
         for (std::size_t p = 0; p < quality.group_errors[g].size(); ++p) {
@@ -110,6 +110,7 @@ void check_quality(const SectionCheck& check) {
 void check_convergence(const SectionCheck& check) {
     if (!check.sector.convergence)
         return;
+    namespace field = layout::convergence;
     const Convergence& c = *check.sector.convergence;
     const auto at_least =
         [&](const char* field, std::uint64_t offset, auto value, auto least, const char* least_name) {
@@ -120,11 +121,11 @@ void check_convergence(const SectionCheck& check) {
             const auto number = static_cast<double>(value);
             check.findings.add(issue::convergence_range, check.place.at(offset), number, path, message);
         };
-    at_least("error_asked", 0, c.error_asked, 0.0f, "0");
-    at_least("error_median", 4, c.error_median, 0.0f, "0");
-    at_least("error_p95", 8, c.error_p95, c.error_median, "the median");
-    at_least("error_max", 12, c.error_max, c.error_p95, "the 95th percentile");
-    at_least("paths_most", 20, c.paths_most, c.paths_least, "the least");
+    at_least("error_asked", field::error_asked, c.error_asked, 0.0f, "0");
+    at_least("error_median", field::error_median, c.error_median, 0.0f, "0");
+    at_least("error_p95", field::error_p95, c.error_p95, c.error_median, "the median");
+    at_least("error_max", field::error_max, c.error_max, c.error_p95, "the 95th percentile");
+    at_least("paths_most", field::paths_most, c.paths_most, c.paths_least, "the least");
 }
 
 }  // namespace drtv

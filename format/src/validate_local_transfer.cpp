@@ -94,7 +94,7 @@ void check_receiver(const LocalTransfer& local, std::size_t p, const SectionChec
         const int exponent = local.sources[s].exponent;
         const int sum = receiver.exponent + exponent;
         if (sum < min_exponent || sum > max_exponent) {
-            const std::uint64_t offset = check.place.at(parts.receiver_at(p) + 4);
+            const std::uint64_t offset = check.place.at(parts.receiver_at(p) + Local::receiver_exponent);
             check.findings.add(issue::local_exponent, offset, sum, path, [&] {
                 return sentence("exponents ",
                                 receiver.exponent,

@@ -122,9 +122,9 @@ void check_settings(const SectionCheck& check) {
         check.findings.add(issue::settings_range, check.place.at(offset), value, path, message);
     };
     const BakeRecord& bake = check.sector.bake;
-    check_positive("rays", 0, bake.rays);
-    check_positive("reach", 8, static_cast<double>(bake.reach_m));
-    check_positive("min_distance", 12, static_cast<double>(bake.min_distance_m));
+    check_positive("rays", layout::bake::rays, bake.rays);
+    check_positive("reach", layout::bake::reach, static_cast<double>(bake.reach_m));
+    check_positive("min_distance", layout::bake::min_distance, static_cast<double>(bake.min_distance_m));
 }
 
 void check_probe_positions(const SectionCheck& check) {
@@ -133,7 +133,7 @@ void check_probe_positions(const SectionCheck& check) {
         for (std::size_t q = 0; q < p; ++q) {
             if (probes[p].position != probes[q].position)
                 continue;
-            const std::uint64_t offset = check.place.at(p * layout::position_bytes);
+            const std::uint64_t offset = check.place.at(p * layout::position::bytes);
             const auto path = [&] { return probe_path(p) + ".position"; };
             const auto message = [&] { return sentence("is that of probe ", q); };
             check.findings.add(issue::duplicate_position, offset, static_cast<double>(q), path, message);
