@@ -10,13 +10,10 @@
 
 namespace drtv::placement {
 
-inline constexpr std::size_t grid_size = 16;
-inline constexpr std::uint8_t no_probe = 255;
-
 struct ProbeGrid {
-    std::int32_t z_origin_units = 0;                                      // bottom, 2^-10 m
-    std::uint32_t cell_height_units = 1024;                               // 2^-10 m; cells are 4 m wide
-    std::array<std::uint8_t, grid_size * grid_size * grid_size> cells{};  // index x + 16 y + 256 z
+    std::int32_t z_origin_units = 0;                    // bottom, 2^-10 m
+    std::uint32_t cell_height_units = 1024;             // 2^-10 m; cells are 4 m wide
+    std::array<std::uint8_t, grid_cell_count> cells{};  // index x + 16 y + 256 z
 
     std::uint32_t buried_cells = 0;  // that stand in solids
     std::uint32_t blind_cells = 0;   // of the others, those that see none of the probes they may name

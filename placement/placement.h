@@ -9,6 +9,8 @@
 
 #include "placement/closed_volume.h"
 
+#include <drtv/conventions.h>
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -24,9 +26,7 @@
 namespace drtv::placement {
 
 // Positions are whole multiples of 2^-10 m, so that all distances are compared exactly.
-inline constexpr std::int32_t units_per_m = 1024;
-inline constexpr std::int32_t sector_size_m = 64;
-inline constexpr std::size_t max_probes = 255;
+inline constexpr std::int32_t units_per_m = position_units_per_m;
 
 // Columns stand in the middles of squares of the world with this side: s15, s16. Where probes may stand
 // nearer than 4 m, the squares are as small as that, and twice for vegetation.

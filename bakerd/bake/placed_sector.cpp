@@ -11,9 +11,6 @@
 namespace drtv::bake {
 namespace {
 
-static_assert(placement::units_per_m == position_units_per_m && placement::sector_size_m == sector_size_m &&
-              placement::max_probes == max_probes);
-
 ProbeKind kind_of(placement::Kind kind) {
     switch (kind) {
         case placement::Kind::ground:

@@ -21,8 +21,6 @@
 namespace drtv::bake {
 namespace {
 
-static_assert(placement::grid_size == grid_size && placement::no_probe == no_probe);
-
 void store_report(const placement::Report& report, Statistics& statistics) {
     statistics.candidates = report.candidates;
     statistics.moved_out = report.moved_out;

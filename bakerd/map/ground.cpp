@@ -50,8 +50,7 @@ SectorCoordinate sector_of(double x_m, double y_m) {
 
 // As it is placed, in whole units.
 SectorCoordinate sector_holding(const ManualProbe& probe) {
-    constexpr double units_per_m = 1024;
-    const auto rounded = [](double m) { return std::round(m * units_per_m) / units_per_m; };
+    const auto rounded = [](double m) { return std::round(m * position_units_per_m) / position_units_per_m; };
     return sector_of(rounded(probe.position.x), rounded(probe.position.y));
 }
 

@@ -4,6 +4,8 @@
 
 #include "bakerd/map/map.h"
 
+#include <drtv/conventions.h>
+
 #include <compare>
 #include <cstdint>
 #include <vector>
@@ -18,7 +20,7 @@ struct SectorCoordinate {
     auto operator<=>(const SectorCoordinate&) const = default;
 };
 
-inline constexpr double sector_size_m = 64;
+inline constexpr double sector_size_m = drtv::sector_size_m;
 
 // Sorted by (j, i). What reaches over a border by mere rounding is not beyond it. Fails with a sentence when
 // an object lies beyond the range of sector coordinates (+-16384) or the map covers more than 2^20 sectors.

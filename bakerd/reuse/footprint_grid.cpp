@@ -74,7 +74,7 @@ FootprintGrid footprint_grid(map::SectorCoordinate sector,
 }
 
 std::size_t quarter_of(map::SectorCoordinate sector, const placement::Position& probe) {
-    constexpr std::int64_t sector_units = placement::sector_size_m * placement::units_per_m;
+    constexpr std::int64_t sector_units = std::int64_t{sector_size_m} * position_units_per_m;
     const auto upper = [](std::int64_t units, std::int64_t s) {
         return units >= s * sector_units + sector_units / 2 ? std::size_t{1} : std::size_t{0};
     };

@@ -209,13 +209,13 @@ TEST(ProbeGrid, AnInteriorsProbeIsNamedInsideOfItAlone) {
     probes.pop_back();
     const ProbeGrid alone = placement::build_grid(0, 0, probes, space(everything));
     EXPECT_EQ(alone.cells[cell_at(alone, {14, 14, 1})], 0);
-    EXPECT_EQ(alone.cells[cell_at(alone, {6, 14, 1})], placement::no_probe) << "nothing lights it";
+    EXPECT_EQ(alone.cells[cell_at(alone, {6, 14, 1})], no_probe) << "nothing lights it";
 }
 
 TEST(ProbeGrid, NoProbesGiveAGridOfNone) {
     const ProbeGrid grid = build(0, 0, {}, everything);
-    EXPECT_TRUE(std::all_of(grid.cells.begin(), grid.cells.end(),
-                            [](std::uint8_t c) { return c == placement::no_probe; }));
+    EXPECT_TRUE(
+        std::all_of(grid.cells.begin(), grid.cells.end(), [](std::uint8_t c) { return c == no_probe; }));
 }
 
 TEST(ProbeGrid, AllProbesLieInsideItsHeight) {

@@ -37,7 +37,7 @@ TEST(Thinning, SectorOfExactlyTheLimitIsLeftAlone) {
 
 TEST(Thinning, OneTooManyIsOneLessAndIsReported) {
     const placement::Placement placed = flat_ground().place(0, 0, 4);
-    EXPECT_EQ(placed.probes.size(), placement::max_probes);
+    EXPECT_EQ(placed.probes.size(), max_probes);
     EXPECT_EQ(placed.report.thinned, 1u);
     EXPECT_EQ(placed.report.used_distance_m, 4);
     EXPECT_GE(least_squared_distance(placed.probes), squared_units(placed.report.used_distance_m));
@@ -46,7 +46,7 @@ TEST(Thinning, OneTooManyIsOneLessAndIsReported) {
 TEST(Thinning, ManyFloorsFitAndNeighboursStayApart) {
     const AnalyticScene scene = tower(9);
     const placement::Placement left = scene.place(0, 0), right = scene.place(1, 0);
-    EXPECT_LE(left.probes.size(), placement::max_probes);
+    EXPECT_LE(left.probes.size(), max_probes);
     EXPECT_GE(left.probes.size(), 64u) << "thinned far more than needed";
     EXPECT_GT(left.report.thinned, 0u);
     EXPECT_GE(least_squared_distance(left.probes), squared_units(left.report.used_distance_m));
@@ -61,7 +61,7 @@ TEST(Thinning, ManualProbesCountAndAreNeverGivenUp) {
     scene.manual = manual_row(200, -50);
     const placement::Placement placed = scene.place(0, 0);
     EXPECT_EQ(count_of(placed, Kind::manual), 200u);
-    EXPECT_LE(placed.probes.size(), placement::max_probes);
+    EXPECT_LE(placed.probes.size(), max_probes);
     EXPECT_GT(placed.report.thinned, 0u);
 }
 
