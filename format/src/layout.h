@@ -2,6 +2,7 @@
 #pragma once
 
 #include <drtv/sector.h>
+#include <drtv/version.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +20,7 @@ inline constexpr std::uint16_t filtered_local_version = 2;
 // Likewise of a file with light groups or quality, or with local transfer of version 3 (of many sources).
 inline constexpr std::uint16_t minor_with_light_groups = 3;
 inline constexpr std::uint16_t many_sources_local_version = 3;
+static_assert(minor_with_light_groups == DRTV_FORMAT_MINOR, "drtv/version.h says what the library knows");
 
 inline constexpr std::size_t header_bytes = 64;
 inline constexpr std::size_t entry_bytes = 32;

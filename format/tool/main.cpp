@@ -1,6 +1,8 @@
 // drtv: validates, shows, compares, strips and pictures sector files.
 #include "commands.h"
 
+#include <drtv/version.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <vector>
@@ -67,7 +69,7 @@ int run(const std::vector<std::string>& arguments) {
         return exit_valid;
     }
     if (command == "--version") {
-        std::puts("drtv " DRTV_VERSION ", sector format 1.3");
+        std::puts("drtv " DRTV_VERSION ", sector format 1." DRTV_VERSION_TEXT(DRTV_FORMAT_MINOR));
         return exit_valid;
     }
     complain("unknown command \"" + command + "\"; drtv --help lists them");

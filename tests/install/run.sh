@@ -21,7 +21,7 @@ for library in $(objdump -p "$work/consumer/consumer" | sed -n 's/^ *NEEDED *\([
         *) echo "the consumer is linked to $library"; exit 1 ;;
     esac
 done
-for file in bin/drtv include/drtv/view.h include/drtv/relight.h share/doc/drtv_format/SPEC.md; do
+for file in bin/drtv include/drtv/version.h include/drtv/view.h include/drtv/relight.h share/doc/drtv_format/SPEC.md; do
     [ -e "$work/prefix/$file" ] || { echo "$file is not installed"; exit 1; }
 done
 
