@@ -24,6 +24,18 @@ inline constexpr double least_mean = 0.02;
 template <std::size_t count>
 using BlockMeans = std::array<std::array<double, count>, block_count>;
 
+// Each block becomes the sum of two, in order; the upper half of them is empty then. `add` adds a block to
+// another.
+template <class Block, class Add>
+void pair_blocks(std::array<Block, block_count>& blocks, Add add) {
+    for (std::size_t k = 0; k < block_count / 2; ++k) {
+        Block pair = blocks[2 * k];
+        add(pair, blocks[2 * k + 1]);
+        blocks[k] = pair;
+    }
+    std::fill(blocks.begin() + block_count / 2, blocks.end(), Block{});
+}
+
 // What blocks say of their mean.
 struct ErrorOfMean {
     double error = 0;  // standard error, root mean square over the numbers

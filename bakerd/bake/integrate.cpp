@@ -44,8 +44,9 @@ class Integrator {
                 light.sums().pair_blocks();
             run_to(2 * light_.paths);
         }
-        light_.error = static_cast<float>(error());
-        light_.budget_ended = wanted > 0 && error() > wanted;
+        const double reached = error();
+        light_.error = static_cast<float>(reached);
+        light_.budget_ended = wanted > 0 && reached > wanted;
         sums_.store(light_);
         store_static_light();
         return std::move(light_);

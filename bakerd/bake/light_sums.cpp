@@ -5,12 +5,7 @@
 namespace drtv::bake {
 
 void LightSums::pair_blocks() {
-    for (std::size_t k = 0; k < block_count / 2; ++k) {
-        BasisSums pair = blocks_[2 * k];
-        bake::add(pair, blocks_[2 * k + 1]);
-        blocks_[k] = pair;
-    }
-    std::fill(blocks_.begin() + block_count / 2, blocks_.end(), BasisSums{});
+    bake::pair_blocks(blocks_, [](BasisSums& sum, const BasisSums& more) { bake::add(sum, more); });
 }
 
 void LightSums::add(const BasisWeights& weights, const glm::vec3& light) {

@@ -166,15 +166,17 @@ std::size_t emissive_triangles(const map::Map& map) {
 }
 
 StaticLights::StaticLights(std::shared_ptr<const map::Map> map) : map_(std::move(map)) {
+    std::vector<std::uint32_t> group_of_point;
+    std::vector<std::uint32_t> group_of_sun;
     for (const map::Light& light : map_->lights) {
         if (!map::shines(light))
             continue;
         if (light.kind == map::LightKind::directional) {
             suns_.push_back({-light.direction, radiometric(light.colour * light.intensity)});
-            group_of_sun_.push_back(light.light_group);
+            group_of_sun.push_back(light.light_group);
         } else {
             points_.push_back(point_light(light));
-            group_of_point_.push_back(light.light_group);
+            group_of_point.push_back(light.light_group);
         }
     }
     const std::vector<std::size_t> triangles = emissive_triangles_of_meshes(*map_);
@@ -185,10 +187,11 @@ StaticLights::StaticLights(std::shared_ptr<const map::Map> map) : map_(std::move
         if (emissive.power > 0)
             emissive_.push_back(std::move(emissive));
     }
-    make_sets();
+    make_sets(group_of_point, group_of_sun);
 }
 
-void StaticLights::make_sets() {
+void StaticLights::make_sets(std::span<const std::uint32_t> group_of_point,
+                             std::span<const std::uint32_t> group_of_sun) {
     const std::vector<std::string>& names = map_->light_groups;
     std::vector<std::uint32_t> by_name(names.size());
     std::iota(by_name.begin(), by_name.end(), 0u);
@@ -200,9 +203,9 @@ void StaticLights::make_sets() {
         sets_.emplace_back().name = names[group];
     }
     for (std::size_t n = 0; n < points_.size(); ++n)
-        sets_[set_of_group(group_of_point_[n])].points.push_back(&points_[n]);
+        sets_[set_of_group(group_of_point[n])].points.push_back(&points_[n]);
     for (std::size_t n = 0; n < suns_.size(); ++n)
-        sets_[set_of_group(group_of_sun_[n])].suns.push_back(&suns_[n]);
+        sets_[set_of_group(group_of_sun[n])].suns.push_back(&suns_[n]);
     for (const EmissiveObject& emissive : emissive_)
         sets_[set_of(emissive.object)].emissive.push_back(&emissive);
 }

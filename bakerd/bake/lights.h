@@ -103,7 +103,9 @@ class StaticLights {
     }
 
   private:
-    void make_sets();
+    // `group_of_point`, `group_of_sun`: the number of the group of each in the map.
+    void make_sets(std::span<const std::uint32_t> group_of_point,
+                   std::span<const std::uint32_t> group_of_sun);
     [[nodiscard]] std::size_t set_of_group(std::uint32_t group) const {
         return group == map::no_light_group ? 0 : set_of_group_[group];
     }
@@ -112,9 +114,6 @@ class StaticLights {
     std::vector<PointLight> points_;
     std::vector<Sun> suns_;
     std::vector<EmissiveObject> emissive_;  // in the map's order of objects
-    // Of points_ and suns_: the number of their group in the map.
-    std::vector<std::uint32_t> group_of_point_;
-    std::vector<std::uint32_t> group_of_sun_;
     std::vector<LightSet> sets_;
     std::vector<std::size_t> set_of_group_;  // by number of the group in the map
 };

@@ -110,6 +110,8 @@ BakedProbe encode_probe(const ProbeLight& light, std::span<const LightSet> sets)
 }
 
 tl::expected<void, std::string> store_probes(std::span<const BakedProbe> probes, Sector& sector) {
+    if (probes.empty())
+        return {};
     bool lit = false;
     Quality& quality = sector.quality.emplace();
     for (std::size_t p = 0; p < probes.size(); ++p) {

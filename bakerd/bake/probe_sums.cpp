@@ -33,12 +33,7 @@ void ProbeSums::Block::add(const Block& other) {
 }
 
 void ProbeSums::pair_blocks() {
-    for (std::size_t k = 0; k < block_count / 2; ++k) {
-        Block pair = blocks_[2 * k];
-        pair.add(blocks_[2 * k + 1]);
-        blocks_[k] = pair;
-    }
-    std::fill(blocks_.begin() + block_count / 2, blocks_.end(), Block{});
+    bake::pair_blocks(blocks_, [](Block& sum, const Block& more) { sum.add(more); });
 }
 
 void ProbeSums::add_direction(const BasisWeights& weights, Half half) {

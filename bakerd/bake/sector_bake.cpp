@@ -126,6 +126,8 @@ class SectorBake {
 
     // What the probes' own light does not say.
     void complete_quality(const PlacedSector& placed) {
+        if (!baked_.sector.quality)
+            return;
         Quality& quality = *baked_.sector.quality;
         quality.buried_cells = indexed_.buried_cells;
         quality.blind_cells = indexed_.blind_cells;
@@ -133,8 +135,6 @@ class SectorBake {
             quality.probes[p].dark = is_dark(baked_.sector, p);
             quality.probes[p].moved = placed.moved[p];
         }
-        if (quality.probes.empty())
-            baked_.sector.quality.reset();
     }
 
     // With the interiors that name them.

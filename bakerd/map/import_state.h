@@ -38,9 +38,6 @@ struct Shared {
     std::set<std::string> warned_of_brightness;              // file and material
 };
 
-// The map's number of a light group of that name, which may be new; none of an empty name.
-[[nodiscard]] std::uint32_t light_group_of(const std::string& name, Map& map);
-
 struct ImportState {
     const GltfDocument& document;
     Map& map;

@@ -1,6 +1,7 @@
 #include "bakerd/map/mesh_placement.h"
 
 #include "bakerd/map/content_digest.h"
+#include "bakerd/map/named_groups.h"
 #include "bakerd/map/warning.h"
 
 #include <fmt/format.h>
@@ -32,16 +33,6 @@ bool shines(const Mesh& mesh, const Map& map) {
     return std::ranges::any_of(mesh.primitives, [&](const Primitive& primitive) {
         return map.materials[primitive.material].emission != glm::vec3(0);
     });
-}
-
-std::uint32_t light_group_of(const std::string& name, Map& map) {
-    if (name.empty())
-        return no_light_group;
-    const auto known = std::ranges::find(map.light_groups, name);
-    const auto index = static_cast<std::uint32_t>(known - map.light_groups.begin());
-    if (known == map.light_groups.end())
-        map.light_groups.push_back(name);
-    return index;
 }
 
 bool is_far(const glm::dvec3& position) {

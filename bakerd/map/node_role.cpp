@@ -1,5 +1,7 @@
 #include "bakerd/map/node_role.h"
 
+#include "bakerd/map/warning.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,10 +56,6 @@ tl::expected<std::string, std::string> read_light_group(const tinygltf::Value& v
     if (!value.IsString())
         return tl::unexpected(std::string("light_group must be a string"));
     const std::string& name = value.Get<std::string>();
-    const auto is_control = [](char letter) {
-        const auto code = static_cast<unsigned char>(letter);
-        return code < 0x20 || code == 0x7F;
-    };
     if (std::ranges::any_of(name, is_control))
         return tl::unexpected(std::string("light_group has a control character in its name"));
     if (name.starts_with(' ') || name.ends_with(' '))

@@ -9,8 +9,7 @@ std::string as_sentence(std::string text) {
     if (text.size() > max_length)
         text = text.substr(0, max_length) + "...";
     for (char& c : text) {
-        const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-        if (is_control)
+        if (is_control(c))
             c = ' ';
     }
     return text;

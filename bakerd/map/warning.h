@@ -7,6 +7,10 @@
 
 namespace drtv::map {
 
+[[nodiscard]] constexpr bool is_control(char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+}
+
 // One line of sensible length, whatever stands in the names that the file gave.
 [[nodiscard]] std::string as_sentence(std::string text);
 

@@ -2,8 +2,7 @@
 
 #include "bytes.h"
 #include "local_filter.h"
-#include "read_failure.h"
-#include "section_table.h"
+#include "section_refusal.h"
 
 #include <zstd.h>
 
@@ -32,11 +31,6 @@ bool unpack_frame(ByteSpan stored, std::vector<std::uint8_t>& out) {
     return true;
 }
 
-template <class... Parts>
-ReadStatus refuse(const PackedSection& packed, const Parts&... parts) {
-    return fail(ReadError::bad_section, packed.entry.offset, section_name(packed.entry), parts...);
-}
-
 }  // namespace
 
 ReadStatus unpack_section(const PackedSection& packed, std::vector<std::uint8_t>& raw) {
@@ -44,18 +38,18 @@ ReadStatus unpack_section(const PackedSection& packed, std::vector<std::uint8_t>
     const std::size_t raw_bytes = packed.entry.raw_bytes;
     const bool filtered = static_cast<Codec>(packed.entry.codec) == Codec::filtered;
     if (!is_one_frame(stored))
-        return refuse(packed, ": its ", stored.size(), " bytes are not one whole zstd frame");
+        return refuse(packed.entry, ": its ", stored.size(), " bytes are not one whole zstd frame");
     raw.resize(filtered ? max_filtered_bytes(raw_bytes) : raw_bytes);
     const bool unpacked = unpack_frame(stored, raw);
     const bool right_size = filtered || raw.size() == raw_bytes;
     if (!unpacked || !right_size)
-        return refuse(packed, ": its zstd frame does not decode to ", raw_bytes, " bytes");
+        return refuse(packed.entry, ": its zstd frame does not decode to ", raw_bytes, " bytes");
     if (!filtered)
         return {};
     const std::vector<std::uint8_t> planes = std::move(raw);
     if (unfilter_local(planes, packed.probe_count, packed.max_sources, raw_bytes, raw))
         return {};
-    return refuse(packed,
+    return refuse(packed.entry,
                   ": the ",
                   planes.size(),
                   " bytes of its zstd frame are not a filtered section of ",

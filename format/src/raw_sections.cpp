@@ -194,9 +194,8 @@ ByteVector light_groups_section(const std::vector<LightGroup>& groups) {
     ByteVector bytes;
     append_u16(bytes, groups.size());
     append_zeros(bytes, Groups::header_bytes - Groups::reserved);
-    for (const LightGroup& group : groups) {
+    for (const LightGroup& group : groups)
         append_padded(bytes, group.name, Groups::name_bytes);
-    }
     for (const LightGroup& group : groups) {
         for (const StaticIrradiance& probe : group.irradiance)
             append_codes(bytes, probe.codes);

@@ -247,8 +247,7 @@ void copy_sector(ByteSpan file, const Sections& sections, Sector& sector) {
 
 ReadStatus read_sector(ByteSpan bytes, Sector& sector) {
     SectionTable table;
-    UnpackedSections unpacked;
-    const Unpacking unpacking{unpacked, unpack_section};
+    Unpacking unpacking{unpack_section};
     Sections sections;
     if (ReadStatus status = load_sections(bytes, table, &unpacking, sections); !status.ok())
         return status;

@@ -14,4 +14,10 @@ template <class... Parts>
     return fail(ReadError::bad_section, section.place.at(at), parts...);
 }
 
+// The section breaks a rule before it is decoded.
+template <class... Parts>
+[[nodiscard]] ReadStatus refuse(const SectionEntry& entry, const Parts&... parts) {
+    return fail(ReadError::bad_section, entry.offset, section_name(entry), parts...);
+}
+
 }  // namespace drtv

@@ -2,6 +2,7 @@
 
 #include "bytes.h"
 #include "read_failure.h"
+#include "section_refusal.h"
 #include "sentence.h"
 
 #include <drtv/sector.h>
@@ -80,11 +81,6 @@ struct SectionSource {
     std::size_t probe_count;
 
     [[nodiscard]] ByteSpan stored() const { return file.subspan(entry.offset, entry.stored_bytes); }
-
-    template <class... Parts>
-    [[nodiscard]] ReadStatus refuse(const Parts&... parts) const {
-        return fail(ReadError::bad_section, entry.offset, section_name(entry), parts...);
-    }
 };
 
 ReadStatus check_raw_size(const SectionSource& source) {
@@ -94,7 +90,7 @@ ReadStatus check_raw_size(const SectionSource& source) {
     if (entry.raw_bytes >= size.min && entry.raw_bytes <= size.max)
         return {};
     const std::string to_max = size.min == size.max ? "" : sentence(" to ", size.max);
-    return source.refuse(" has ", entry.raw_bytes, " bytes, must have ", size.min, to_max);
+    return refuse(entry, " has ", entry.raw_bytes, " bytes, must have ", size.min, to_max);
 }
 
 // Of a section of a version that this reader knows.
@@ -114,10 +110,10 @@ ReadStatus check_codec(const SectionSource& source) {
     const SectionEntry& entry = source.entry;
     if (is_known_codec(static_cast<Codec>(entry.codec), entry.version))
         return {};
-    return source.refuse(" of version ", entry.version, " has the unknown codec ", entry.codec);
+    return refuse(entry, " of version ", entry.version, " has the unknown codec ", entry.codec);
 }
 
-ReadStatus decode(const SectionSource& source, const Unpacking* unpacking, Section& section) {
+ReadStatus decode(const SectionSource& source, Unpacking* unpacking, Section& section) {
     const SectionEntry& entry = source.entry;
     if (ReadStatus status = check_raw_size(source); !status.ok())
         return status;
@@ -160,7 +156,7 @@ ReadStatus check_required(const SectionEntry* entry, std::uint16_t kind) {
 
 }  // namespace
 
-ReadStatus load_sections(ByteSpan file, SectionTable& table, const Unpacking* unpacking, Sections& sections) {
+ReadStatus load_sections(ByteSpan file, SectionTable& table, Unpacking* unpacking, Sections& sections) {
     if (ReadStatus status = load_section_table(file, table); !status.ok())
         return status;
     const std::uint16_t minor = load_u16(file, layout::header::minor);

@@ -38,17 +38,16 @@ struct Sections {
 };
 
 // How compressed sections are decoded (codec.h), and where their bytes lie then.
-using UnpackedSections = std::array<std::vector<std::uint8_t>, known_kinds>;
 struct Unpacking {
-    UnpackedSections& sections;
     ReadStatus (*unpack)(const PackedSection& packed, std::vector<std::uint8_t>& raw);
+    std::array<std::vector<std::uint8_t>, known_kinds> sections{};
 };
 
 // Checks the whole file by SPEC.md section 6, and gives its table too. With `unpacking` null, a compressed
 // section fails. Allocates for compressed sections and for messages only.
 ReadStatus load_sections(std::span<const std::uint8_t> file,
                          SectionTable& table,
-                         const Unpacking* unpacking,
+                         Unpacking* unpacking,
                          Sections& sections);
 
 // The sector that they hold. REQUIRES: load_sections gave them for this file.

@@ -1,31 +1,40 @@
-// Whether bytes are UTF-8.
+// UTF-8 in bytes that may be anything; the validator and the tool ask.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string_view>
 
 namespace drtv {
 
-// As table 3-7 of the Unicode Standard 15 has it: no overlong forms, no surrogates, nothing above U+10FFFF.
-[[nodiscard]] inline bool is_utf8(std::string_view text) {
-    std::size_t at = 0;
-    const auto byte = [&](std::size_t n) -> std::uint8_t {
-        return at + n < text.size() ? static_cast<std::uint8_t>(text[at + n]) : 0;
+// Bytes of the UTF-8 sequence at the start of `text`, 0 when there is none (RFC 3629). REQUIRES: not empty.
+[[nodiscard]] inline std::size_t utf8_length(std::string_view text) {
+    const auto byte = [&](std::size_t n) {
+        return n < text.size() ? unsigned{static_cast<unsigned char>(text[n])} : 0u;
     };
-    while (at < text.size()) {
-        const std::uint8_t first = byte(0);
-        const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-        const bool is_first = first < 0x80 || (first >= 0xC2 && first <= 0xF4);
-        const std::uint8_t low = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
-        const std::uint8_t high = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
-        if (!is_first || (length > 1 && (byte(1) < low || byte(1) > high)))
+    const unsigned first = byte(0);
+    const unsigned second = byte(1);
+    if (first < 0x80)
+        return 1;
+    if (first < 0xC2 || first > 0xF4)
+        return 0;
+    const std::size_t length = first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+    for (std::size_t n = 1; n < length; ++n) {
+        if ((byte(n) & 0xC0u) != 0x80)
+            return 0;
+    }
+    // Longer than need be, a surrogate, or beyond the last code point.
+    if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
+        (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F))
+        return 0;
+    return length;
+}
+
+[[nodiscard]] inline bool is_utf8(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        if (length == 0)
             return false;
-        for (std::size_t n = 2; n < length; ++n) {
-            if ((byte(n) & 0xC0) != 0x80)
-                return false;
-        }
-        at += length;
+        text.remove_prefix(length);
     }
     return true;
 }

@@ -75,8 +75,7 @@ Report validate_sector(std::span<const std::uint8_t> bytes, const ValidateOption
     assert(options.max_findings > 0);
     Findings findings(options);
     SectionTable table;
-    UnpackedSections unpacked;
-    const Unpacking unpacking{unpacked, unpack_section};
+    Unpacking unpacking{unpack_section};
     Sections sections;
     if (const ReadStatus status = load_sections(bytes, table, &unpacking, sections); !status.ok()) {
         findings.add(

@@ -1,5 +1,7 @@
 #include "json_writer.h"
 
+#include "../src/utf8.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -12,28 +14,6 @@ void append_number(std::string& out, Number number) {
     char buffer[64];
     const auto result = std::to_chars(buffer, buffer + sizeof buffer, number);
     out.append(buffer, result.ptr);
-}
-
-// Bytes of the UTF-8 sequence at the start of `text`, 0 when there is none (RFC 3629). REQUIRES: not empty.
-std::size_t utf8_length(std::string_view text) {
-    const auto byte = [&](std::size_t n) {
-        return n < text.size() ? unsigned{static_cast<unsigned char>(text[n])} : 0u;
-    };
-    const unsigned first = byte(0), second = byte(1);
-    if (first < 0x80)
-        return 1;
-    if (first < 0xC2 || first > 0xF4)
-        return 0;
-    const std::size_t length = first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-    for (std::size_t n = 1; n < length; ++n) {
-        if ((byte(n) & 0xC0u) != 0x80)
-            return 0;
-    }
-    // Longer than need be, a surrogate, or beyond the last code point.
-    if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
-        (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F))
-        return 0;
-    return length;
 }
 
 }  // namespace

@@ -60,30 +60,40 @@ double static_light(const std::vector<StaticIrradiance>& probes,
     return decode(light.codes[c][b], scale_of_exponent(light.exponent));
 }
 
-const std::vector<StaticIrradiance>& group_of(const Sector& sector, const std::string& name) {
-    static const std::vector<StaticIrradiance> none;
+const LightGroup* find_group(const Sector& sector, const std::string& name) {
     const auto group = std::ranges::find(sector.light_groups, name, &LightGroup::name);
-    return group == sector.light_groups.end() ? none : group->irradiance;
+    return group == sector.light_groups.end() ? nullptr : &*group;
 }
 
-bool has_group(const Sector& sector, const std::string& name) {
-    return std::ranges::find(sector.light_groups, name, &LightGroup::name) != sector.light_groups.end();
-}
+// A light group as either sector has it; null where it has not.
+struct GroupPair {
+    std::string name;
+    const LightGroup* first;
+    const LightGroup* second;
+};
 
-// Of both sectors, one of each.
-std::set<std::string> group_names(const Sector& first, const Sector& second) {
+// Of both sectors, by name.
+std::vector<GroupPair> group_pairs(const Sector& first, const Sector& second) {
     std::set<std::string> names;
     for (const Sector* sector : {&first, &second}) {
         for (const LightGroup& group : sector->light_groups)
             names.insert(group.name);
     }
-    return names;
+    std::vector<GroupPair> pairs;
+    for (const std::string& name : names)
+        pairs.push_back({name, find_group(first, name), find_group(second, name)});
+    return pairs;
+}
+
+// 0 where the sector has no such group.
+double group_light(const LightGroup* group, std::size_t p, std::size_t c, std::size_t b) {
+    return group == nullptr ? 0 : static_light(group->irradiance, p, c, b);
 }
 
 class Differ {
   public:
     Differ(const Sector& first, const Sector& second)
-        : first_(first), second_(second), group_names_(group_names(first, second)) {}
+        : first_(first), second_(second), groups_(group_pairs(first, second)) {}
 
     SectorDiff run() {
         match_probes();
@@ -101,11 +111,11 @@ class Differ {
         diff_.convergence = first_.convergence != second_.convergence;
         diff_.interiors = first_.interiors != second_.interiors;
         diff_.quality = first_.quality != second_.quality;
-        for (const std::string& name : group_names_) {
-            if (!has_group(second_, name))
-                diff_.groups_only_first.push_back(name);
-            else if (!has_group(first_, name))
-                diff_.groups_only_second.push_back(name);
+        for (const GroupPair& group : groups_) {
+            if (group.second == nullptr)
+                diff_.groups_only_first.push_back(group.name);
+            else if (group.first == nullptr)
+                diff_.groups_only_second.push_back(group.name);
         }
         return std::move(diff_);
     }
@@ -178,11 +188,11 @@ class Differ {
     }
 
     void diff_light_groups(std::size_t p, std::size_t before, std::size_t c, std::size_t b) {
-        for (const std::string& name : group_names_) {
-            const double difference = static_light(group_of(second_, name), p, c, b) -
-                                      static_light(group_of(first_, name), before, c, b);
+        for (const GroupPair& group : groups_) {
+            const double difference =
+                group_light(group.second, p, c, b) - group_light(group.first, before, c, b);
             add(light_groups, difference, [&] {
-                return probe_path(p) + ".light_groups[" + name + "]." + channel_name[c] + index(b);
+                return probe_path(p) + ".light_groups[" + group.name + "]." + channel_name[c] + index(b);
             });
         }
     }
@@ -250,7 +260,7 @@ class Differ {
 
     const Sector& first_;
     const Sector& second_;
-    const std::set<std::string> group_names_;
+    const std::vector<GroupPair> groups_;
     std::vector<std::size_t> second_of_first_;
     bool probe_changed_ = false;
     SectorDiff diff_;
