@@ -41,7 +41,7 @@ OPEN_HEADERS = {"drtv/conventions.h": {"placement", "bakerd/map"}}
 # Foreign headers -> the only rooms that may include them.
 FOREIGN = {
     r"tiny_gltf\.h": {"bakerd/map"},
-    r"stb/": {"bakerd/map", "client"},
+    r"stb/": {"bakerd/map", "client", "format/tool"},
     r"embree3/": {"bakerd/trace"},
     r"CGAL/": {"placement"},
     r"glm/": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/reuse"},
@@ -52,7 +52,7 @@ FOREIGN = {
     r"google/protobuf/": {"bakerd/service"},
     r"nlohmann/": {"bakerd/map", "bakerd/store", "bakerd/worker", "client"},
     r"openssl/": {"bakerd/map", "client"},
-    r"CLI/": {"bakerd", "client"},
+    r"CLI/": {"bakerd", "client", "format/tool"},
     r"spdlog/": {"bakerd", "bakerd/worker", "bakerd/farm", "bakerd/service"},
     r"fmt/": {
         "bakerd",

@@ -1,4 +1,3 @@
-#include "arguments.h"
 #include "commands.h"
 #include "diff_report.h"
 #include "files.h"
@@ -17,14 +16,6 @@ namespace {
 
 using Side = std::map<SectorPlace, std::string>;  // the file of each sector
 
-struct Request {
-    std::string first;
-    std::string second;
-    std::optional<std::string> png;
-    double metres_per_pixel = 0;
-    bool as_json = false;
-};
-
 struct Comparison {
     DiffTotals totals;
     DiffReport report;
@@ -37,29 +28,6 @@ constexpr double min_shown_change = 1e-4;
 constexpr Float3 same_colour = {0.05f, 0.05f, 0.05f};
 constexpr Float3 added_colour = {0.1f, 0.3f, 1};
 constexpr Float3 removed_colour = {0.9f, 0, 0.9f};
-
-std::optional<Request> parse(Arguments arguments) {
-    const auto parsed = ParsedArguments::parse(
-        "diff", arguments, {{"--json"}, {"--png", true}, {"--metres-per-pixel", true}});
-    if (!parsed)
-        return std::nullopt;
-    const auto metres_per_pixel = parsed->positive("--metres-per-pixel", 1000, 0);
-    if (!metres_per_pixel)
-        return std::nullopt;
-    if (parsed->has("--metres-per-pixel") && !parsed->has("--png")) {
-        complain("diff: --metres-per-pixel is for the picture, and there is no --png");
-        return std::nullopt;
-    }
-    if (parsed->positional.size() != 2) {
-        complain("diff needs two files or folders");
-        return std::nullopt;
-    }
-    return Request{parsed->positional[0],
-                   parsed->positional[1],
-                   parsed->has("--png") ? std::optional(parsed->value("--png")) : std::nullopt,
-                   *metres_per_pixel,
-                   parsed->has("--json")};
-}
 
 // Grey where nothing changed, then from green over yellow to red, by the logarithm.
 Float3 change_colour(double change) {
@@ -161,7 +129,7 @@ int compare_sides(const Side& first, const Side& second, Comparison& comparison)
     return exit_valid;
 }
 
-int write_picture(const RegionPicture& picture, const Request& request) {
+int write_picture(const RegionPicture& picture, const DiffRequest& request) {
     const auto image = draw(picture, request.metres_per_pixel);
     if (!image)
         return exit_usage;
@@ -170,7 +138,7 @@ int write_picture(const RegionPicture& picture, const Request& request) {
         complain(error);
         return exit_unreadable;
     }
-    if (request.as_json)
+    if (request.json)
         return exit_valid;
     std::printf(
         "%s: grey is equal; green changed by %g or less of a white sky, yellow by %g, red by %g or more; "
@@ -184,23 +152,20 @@ int write_picture(const RegionPicture& picture, const Request& request) {
 
 }  // namespace
 
-int run_diff(Arguments arguments) {
-    const auto request = parse(arguments);
-    if (!request)
-        return exit_usage;
+int run_diff(const DiffRequest& request) {
     int exit_code = exit_valid;
-    const auto first = files_of(request->first, exit_code);
-    const auto second = first ? files_of(request->second, exit_code) : std::nullopt;
+    const auto first = files_of(request.first, exit_code);
+    const auto second = first ? files_of(request.second, exit_code) : std::nullopt;
     if (!second)
         return exit_code;
 
-    Comparison comparison{{}, DiffReport(request->as_json), {}};
+    Comparison comparison{{}, DiffReport(request.json), {}};
     exit_code = compare_sides(*first, *second, comparison);
     if (exit_code != exit_valid)
         return exit_code;
     comparison.report.finish(comparison.totals);
-    if (request->png)
-        exit_code = write_picture(comparison.picture, *request);
+    if (request.png)
+        exit_code = write_picture(comparison.picture, request);
     if (exit_code != exit_valid)
         return exit_code;
     return comparison.totals.equal() ? exit_valid : exit_different;

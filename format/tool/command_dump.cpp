@@ -1,4 +1,3 @@
-#include "arguments.h"
 #include "commands.h"
 #include "files.h"
 #include "json_writer.h"
@@ -175,18 +174,10 @@ void append_interiors(JsonWriter& json, const Sector& sector) {
 
 }  // namespace
 
-int run_dump(Arguments arguments) {
-    const auto parsed = ParsedArguments::parse("dump", arguments, {{"--json"}});
-    if (!parsed)
-        return exit_usage;
-    if (!parsed->has("--json") || parsed->positional.size() != 1) {
-        complain("usage is: drtv dump FILE --json");
-        return exit_usage;
-    }
-    const std::string& path = parsed->positional.front();
+int run_dump(const std::string& file) {
     int exit_code = exit_valid;
     std::vector<std::uint8_t> bytes;
-    const std::optional<Sector> loaded = load_sector(path, exit_code, &bytes);
+    const std::optional<Sector> loaded = load_sector(file, exit_code, &bytes);
     if (!loaded)
         return exit_code;
     const Sector& sector = *loaded;

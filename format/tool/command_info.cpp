@@ -1,4 +1,3 @@
-#include "arguments.h"
 #include "commands.h"
 #include "files.h"
 #include "quality_parts.h"
@@ -152,17 +151,10 @@ void print_light(const Sector& sector) {
 
 }  // namespace
 
-int run_info(Arguments arguments) {
-    const auto parsed = ParsedArguments::parse("info", arguments, {});
-    if (!parsed)
-        return exit_usage;
-    if (parsed->positional.size() != 1) {
-        complain("info needs exactly one file");
-        return exit_usage;
-    }
+int run_info(const std::string& file) {
     int exit_code = exit_valid;
     std::vector<std::uint8_t> bytes;
-    const std::optional<Sector> loaded = load_sector(parsed->positional.front(), exit_code, &bytes);
+    const std::optional<Sector> loaded = load_sector(file, exit_code, &bytes);
     if (!loaded)
         return exit_code;
     const Sector& sector = *loaded;

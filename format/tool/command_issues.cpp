@@ -1,4 +1,3 @@
-#include "arguments.h"
 #include "commands.h"
 
 #include <drtv/issues.h>
@@ -50,14 +49,7 @@ constexpr const char* retired = R"(
 A validator of 0.1.0 reports both of bakes whose probes are chosen by sight; `--ignore` leaves them out.
 )";
 
-int run_issues(Arguments arguments) {
-    const auto parsed = ParsedArguments::parse("issues", arguments, {});
-    if (!parsed)
-        return exit_usage;
-    if (!parsed->positional.empty()) {
-        complain("issues takes no arguments");
-        return exit_usage;
-    }
+int run_issues() {
     std::fputs(head, stdout);
     for (const auto& [group, title] : groups) {
         std::printf("\n## %s\n\n| code | severity | meaning |\n|------|----------|---------|\n", title);

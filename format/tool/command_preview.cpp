@@ -1,4 +1,3 @@
-#include "arguments.h"
 #include "commands.h"
 #include "dot_colour.h"
 #include "files.h"
@@ -8,8 +7,10 @@
 #include <array>
 #include <cstdio>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace drtv::tool {
 namespace {
@@ -20,52 +21,21 @@ constexpr std::array<std::pair<std::string_view, DotQuantity>, 4> quantities = {
      {"errors", DotQuantity::errors},
      {"back_hits", DotQuantity::back_hits}}};
 
-struct PreviewArguments {
-    std::string folder, out;
-    double metres_per_pixel = 0;
-    DotQuantity quantity = DotQuantity::relit;
-};
-
-std::optional<PreviewArguments> parse(Arguments arguments) {
-    const auto parsed = ParsedArguments::parse(
-        "preview", arguments, {{"--out", true}, {"--metres-per-pixel", true}, {"--quantity", true}});
-    if (!parsed)
-        return std::nullopt;
-    PreviewArguments preview;
-    const auto metres_per_pixel = parsed->positive("--metres-per-pixel", 1000, 0);
-    if (!metres_per_pixel)
-        return std::nullopt;
-    preview.metres_per_pixel = *metres_per_pixel;
-    if (parsed->has("--quantity")) {
-        const auto* quantity = std::ranges::find(
-            quantities, parsed->value("--quantity"), &std::pair<std::string_view, DotQuantity>::first);
-        if (quantity == quantities.end()) {
-            complain("preview: --quantity takes relit, sky, errors or back_hits, not \"" +
-                     parsed->value("--quantity") + "\"");
-            return std::nullopt;
-        }
-        preview.quantity = quantity->second;
-    }
-    if (parsed->positional.size() > 1) {
-        complain("preview takes one folder or file, \"" + parsed->positional[1] + "\" is one too many");
-        return std::nullopt;
-    }
-    if (parsed->positional.empty() || parsed->value("--out").empty()) {
-        complain("usage is: drtv preview DIR --out FILE.png");
-        return std::nullopt;
-    }
-    preview.folder = parsed->positional.front();
-    preview.out = parsed->value("--out");
-    return preview;
-}
-
 }  // namespace
 
-int run_preview(Arguments arguments) {
-    const auto parsed = parse(arguments);
-    if (!parsed)
+std::vector<std::string> preview_quantities() {
+    std::vector<std::string> names;
+    for (const auto& [name, quantity] : quantities)
+        names.emplace_back(name);
+    return names;
+}
+
+int run_preview(const PreviewRequest& request) {
+    const auto* quantity =
+        std::ranges::find(quantities, request.quantity, &std::pair<std::string_view, DotQuantity>::first);
+    if (quantity == quantities.end())
         return exit_usage;
-    const auto files = sector_files(parsed->folder);
+    const auto files = sector_files(request.path);
     if (!files)
         return exit_unreadable;
     RegionPicture picture;
@@ -75,19 +45,19 @@ int run_preview(Arguments arguments) {
         if (!sector)
             return exit_code;
         picture.add(*sector, [&](std::size_t p, float sky_visibility) {
-            return dot_colour(*sector, p, sky_visibility, parsed->quantity);
+            return dot_colour(*sector, p, sky_visibility, quantity->second);
         });
     }
-    const auto image = draw(picture, parsed->metres_per_pixel);
+    const auto image = draw(picture, request.metres_per_pixel);
     if (!image)
         return exit_usage;
-    const std::string error = write_file(parsed->out, encode_png(*image));
+    const std::string error = write_file(request.out, encode_png(*image));
     if (!error.empty()) {
         complain(error);
         return exit_unreadable;
     }
     std::printf("%s: %zu x %zu pixels, %zu sector%s, %zu probes\n",
-                parsed->out.c_str(),
+                request.out.c_str(),
                 image->width,
                 image->height,
                 files->size(),

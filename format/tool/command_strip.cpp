@@ -1,4 +1,3 @@
-#include "arguments.h"
 #include "commands.h"
 #include "files.h"
 
@@ -9,7 +8,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
-#include <span>
 #include <string_view>
 
 namespace drtv::tool {
@@ -19,51 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 6> optional_sections = {
     "static_irradiance", "light_groups", "local_transfer", "convergence", "interiors", "quality"};
-// Kept unless --keep says otherwise: what a game or its tools may ask for.
-constexpr std::span<const std::string_view> usually_kept =
-    std::span(optional_sections).first(optional_sections.size() - 1);
-
-struct Request {
-    std::string in, out;
-    std::vector<std::string> keep;
-    WriteOptions write;
-};
-
-std::optional<Request> parse(Arguments arguments) {
-    const auto parsed =
-        ParsedArguments::parse("strip", arguments, {{"--out", true}, {"--keep", true}, {"--codec", true}});
-    if (!parsed)
-        return std::nullopt;
-    if (parsed->positional.size() != 1 || !parsed->has("--out")) {
-        complain("usage is: drtv strip PATH --out PATH [--keep SECTION,...] [--codec raw|zstd]");
-        return std::nullopt;
-    }
-    Request request{parsed->positional.front(), parsed->value("--out"), {}, {}};
-    const std::string keep = parsed->value("--keep");
-    if (!parsed->has("--keep")) {
-        request.keep.assign(usually_kept.begin(), usually_kept.end());
-    } else if (keep == "all") {
-        request.keep.assign(optional_sections.begin(), optional_sections.end());
-    } else if (keep != "none") {
-        request.keep = split_list(keep);
-    }
-    for (const std::string& name : request.keep) {
-        if (std::ranges::find(optional_sections, name) != optional_sections.end())
-            continue;
-        complain("strip: \"" + name +
-                 "\" is no optional section: there are static_irradiance, light_groups, local_transfer, "
-                 "convergence, interiors and quality; all and none stand alone");
-        return std::nullopt;
-    }
-    const std::string codec = parsed->has("--codec") ? parsed->value("--codec") : "raw";
-    if (codec != "raw" && codec != "zstd") {
-        complain("strip: --codec takes raw or zstd, not \"" + codec + "\"");
-        return std::nullopt;
-    }
-    request.write.codec = codec == "zstd" ? Codec::zstd : Codec::raw;
-    return request;
-}
-
 void strip(Sector& sector, const std::vector<std::string>& keep) {
     const auto keeps = [&](std::string_view name) { return std::ranges::find(keep, name) != keep.end(); };
     if (!keeps("static_irradiance"))
@@ -82,7 +35,7 @@ void strip(Sector& sector, const std::vector<std::string>& keep) {
 
 // The folder's files keep their names below `out`; a single file becomes `out`, or lies in it where it is a
 // folder or ends with a slash.
-std::string target_of(const std::string& file, const Request& request) {
+std::string target_of(const std::string& file, const StripRequest& request) {
     std::error_code code;
     if (fs::is_directory(request.in, code))
         return (fs::path(request.out) / fs::path(file).lexically_relative(request.in)).string();
@@ -111,15 +64,17 @@ std::size_t left_behind(const std::string& out, const std::set<fs::path>& writte
 
 }  // namespace
 
-int run_strip(Arguments arguments) {
-    const auto request = parse(arguments);
-    if (!request)
-        return exit_usage;
-    const auto files = sector_files(request->in);
+std::vector<std::string> optional_section_names() {
+    return {optional_sections.begin(), optional_sections.end()};
+}
+
+int run_strip(const StripRequest& request) {
+    const WriteOptions write{request.compress ? Codec::zstd : Codec::raw};
+    const auto files = sector_files(request.in);
     if (!files)
         return exit_unreadable;
-    if (is_within(request->in, request->out)) {
-        complain("strip: " + request->out + " is, or lies in, " + request->in + ": write to another place");
+    if (is_within(request.in, request.out)) {
+        complain("strip: " + request.out + " is, or lies in, " + request.in + ": write to another place");
         return exit_usage;
     }
     std::set<fs::path> inputs;
@@ -128,7 +83,7 @@ int run_strip(Arguments arguments) {
         inputs.insert(fs::weakly_canonical(file, code));
     // All are read before the first is written, so that a broken one leaves no mixture.
     for (const std::string& file : *files) {
-        const std::string target = target_of(file, *request);
+        const std::string target = target_of(file, request);
         if (inputs.contains(fs::weakly_canonical(target, code))) {
             complain("strip: " + target + " is a file that is stripped: write to another place");
             return exit_usage;
@@ -145,9 +100,9 @@ int run_strip(Arguments arguments) {
         std::optional<Sector> sector = load_sector(file, exit_code, &bytes);
         if (!sector)
             return exit_code;
-        strip(*sector, request->keep);
-        const std::vector<std::uint8_t> stripped = write_sector(*sector, request->write);
-        const std::string target = target_of(file, *request);
+        strip(*sector, request.keep);
+        const std::vector<std::uint8_t> stripped = write_sector(*sector, write);
+        const std::string target = target_of(file, request);
         std::error_code ignored;
         if (const fs::path folder = fs::path(target).parent_path(); !folder.empty())
             fs::create_directories(folder, ignored);
@@ -166,10 +121,10 @@ int run_strip(Arguments arguments) {
                 before,
                 after);
     std::error_code ignored;
-    if (fs::is_directory(request->in, ignored)) {
-        if (const std::size_t others = left_behind(request->out, written); others > 0) {
+    if (fs::is_directory(request.in, ignored)) {
+        if (const std::size_t others = left_behind(request.out, written); others > 0) {
             std::printf("%s holds %zu other sector file%s, left as %s\n",
-                        request->out.c_str(),
+                        request.out.c_str(),
                         others,
                         others == 1 ? "" : "s",
                         others == 1 ? "it was" : "they were");

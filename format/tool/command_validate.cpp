@@ -1,4 +1,3 @@
-#include "arguments.h"
 #include "check_files.h"
 #include "commands.h"
 #include "files.h"
@@ -19,15 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Request {
-    std::vector<std::string> paths;
-    ValidateOptions options;  // but those to ignore
-    std::vector<const Issue*> ignored;
-    bool json = false;
-    bool neighbours = false;
-    bool warnings_as_errors = false;
-};
-
 bool ignore(const std::string& code, std::vector<const Issue*>& ignored) {
     const Issue* issue = issue_of_code(code);
     if (issue == nullptr) {
@@ -40,47 +30,6 @@ bool ignore(const std::string& code, std::vector<const Issue*>& ignored) {
     }
     ignored.push_back(issue);
     return true;
-}
-
-std::optional<Request> parse(Arguments arguments) {
-    const auto parsed = ParsedArguments::parse("validate",
-                                               arguments,
-                                               {{"--json"},
-                                                {"--quick"},
-                                                {"--full"},
-                                                {"--neighbours"},
-                                                {"--warnings-as-errors"},
-                                                {"--ignore", true},
-                                                {"--max-findings", true}});
-    if (!parsed)
-        return std::nullopt;
-    Request request;
-    request.paths = parsed->positional;
-    request.json = parsed->has("--json");
-    request.neighbours = parsed->has("--neighbours");
-    request.warnings_as_errors = parsed->has("--warnings-as-errors");
-    request.options.quick = parsed->has("--quick");
-    if (request.options.quick && (parsed->has("--full") || request.neighbours)) {
-        complain(
-            std::string("validate: --quick looks at structure and checksums only, it does not go with ") +
-            (request.neighbours ? "--neighbours" : "--full"));
-        return std::nullopt;
-    }
-    const auto max_findings = parsed->count("--max-findings", 1, 1'000'000, request.options.max_findings);
-    if (!max_findings)
-        return std::nullopt;
-    request.options.max_findings = *max_findings;
-    for (const std::string& list : parsed->all("--ignore")) {
-        for (const std::string& code : split_list(list)) {
-            if (!ignore(code, request.ignored))
-                return std::nullopt;
-        }
-    }
-    if (request.paths.empty()) {
-        complain("validate needs at least one file or folder");
-        return std::nullopt;
-    }
-    return request;
 }
 
 // All files at and below the paths, each once. False where a path gives none: that is told.
@@ -105,26 +54,27 @@ bool find_files(const std::vector<std::string>& paths, std::vector<CheckedFile>&
 
 }  // namespace
 
-int run_validate(Arguments arguments) {
-    std::optional<Request> request = parse(arguments);
-    if (!request)
-        return exit_usage;
-    ValidateOptions& options = request->options;
-    options.ignored = request->ignored;
+int run_validate(const ValidateRequest& request) {
+    std::vector<const Issue*> ignored;
+    for (const std::string& code : request.ignored) {
+        if (!ignore(code, ignored))
+            return exit_usage;
+    }
+    const ValidateOptions options{request.quick, request.max_findings, ignored};
 
     std::vector<CheckedFile> files;
-    int exit_code = find_files(request->paths, files) ? exit_valid : exit_unreadable;
-    check_files(files, options, request->neighbours);
-    const std::size_t folders = request->neighbours ? check_regions(files, options) : 0;
+    int exit_code = find_files(request.paths, files) ? exit_valid : exit_unreadable;
+    check_files(files, options, request.neighbours);
+    const std::size_t folders = request.neighbours ? check_regions(files, options) : 0;
 
-    ValidateReport report(request->json);
+    ValidateReport report(request.json);
     for (const CheckedFile& file : files) {
         if (!file.unreadable.empty()) {
             complain(file.unreadable);
             exit_code = std::max<int>(exit_code, exit_unreadable);
             continue;
         }
-        const bool alarming = request->warnings_as_errors && file.report.warnings > 0;
+        const bool alarming = request.warnings_as_errors && file.report.warnings > 0;
         const bool valid = file.report.valid() && !alarming;
         if (!valid)
             exit_code = exit_invalid;

@@ -1,8 +1,10 @@
-// The tool's commands. Each takes the arguments after its name and gives the exit code of DESIGN section 6.
+// The tool's commands. main.cpp makes their requests from the command line; each gives the exit code.
 #pragma once
 
-#include <span>
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace drtv::tool {
 
@@ -14,15 +16,50 @@ enum ExitCode : int {
     exit_different = 4
 };
 
-using Arguments = std::span<const std::string>;
+struct ValidateRequest {
+    std::vector<std::string> paths;
+    std::vector<std::string> ignored;  // codes
+    std::size_t max_findings = 100;
+    bool json = false;
+    bool quick = false;
+    bool neighbours = false;
+    bool warnings_as_errors = false;
+};
+int run_validate(const ValidateRequest& request);
 
-int run_validate(Arguments arguments);
-int run_info(Arguments arguments);
-int run_dump(Arguments arguments);
-int run_preview(Arguments arguments);
-int run_strip(Arguments arguments);
-int run_diff(Arguments arguments);
-int run_issues(Arguments arguments);
+int run_info(const std::string& file);
+
+// As JSON.
+int run_dump(const std::string& file);
+
+struct PreviewRequest {
+    std::string path;
+    std::string out;
+    double metres_per_pixel = 0;  // 0: as fits the region
+    std::string quantity;         // one of preview_quantities()
+};
+int run_preview(const PreviewRequest& request);
+[[nodiscard]] std::vector<std::string> preview_quantities();
+
+struct StripRequest {
+    std::string in;
+    std::string out;
+    std::vector<std::string> keep;  // of optional_section_names()
+    bool compress = false;
+};
+int run_strip(const StripRequest& request);
+[[nodiscard]] std::vector<std::string> optional_section_names();
+
+struct DiffRequest {
+    std::string first;
+    std::string second;
+    std::optional<std::string> png;
+    double metres_per_pixel = 0;  // as above
+    bool json = false;
+};
+int run_diff(const DiffRequest& request);
+
+int run_issues();
 
 // One sentence to stderr, "drtv: " before it.
 void complain(const std::string& sentence);

@@ -1,10 +1,15 @@
-// drtv: validates, shows, compares, strips and pictures sector files.
+// drtv: validates, shows, compares, strips and pictures sector files. Here the command line is taken apart.
 #include "commands.h"
 
 #include <drtv/version.h>
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace drtv::tool {
@@ -15,72 +20,202 @@ void complain(const std::string& sentence) {
 
 namespace {
 
-constexpr const char* usage =
-    "usage: drtv COMMAND ...\n"
-    "\n"
-    "  validate PATH... [--json]       check sector files, or all of a folder\n"
-    "          [--quick | --full]      structure and checksums only, or everything (the default)\n"
-    "          [--neighbours]          also the sectors of a folder against each other\n"
-    "          [--warnings-as-errors] [--ignore CODE]... [--max-findings N]\n"
-    "  info FILE                       what a sector file holds\n"
-    "  dump FILE --json                every number of a sector file as JSON\n"
-    "  diff A B [--json]               what changed between two files or folders\n"
-    "          [--png FILE.png] [--metres-per-pixel M]\n"
-    "  strip PATH --out PATH           the same sectors with fewer sections, or compressed\n"
-    "          [--keep SECTION,...]    optional sections to keep: static_irradiance, light_groups,\n"
-    "                                  local_transfer, convergence, interiors, quality; all, or none;\n"
-    "                                  the default is all but quality\n"
-    "          [--codec raw|zstd]      how sections are stored; raw is the default\n"
-    "  preview DIR --out FILE.png      picture of a region from above\n"
-    "          [--metres-per-pixel M] [--quantity relit|sky|errors|back_hits]\n"
-    "  issues                          the table of all that validate can find\n"
-    "  --version                       version of tool and format\n"
-    "\n"
-    "exit status: 0 valid or equal, 1 wrong usage, 2 a file cannot be read or written, 3 a file is invalid,\n"
-    "4 diff found a difference\n";
+constexpr double max_metres_per_pixel = 1000;
 
-int run(const std::vector<std::string>& arguments) {
-    if (arguments.empty()) {
-        std::fputs(usage, stderr);
+// What the command line says.
+struct CommandLine {
+    ValidateRequest validate;
+    PreviewRequest preview{{}, {}, 0, "relit"};
+    StripRequest strip;
+    DiffRequest diff;
+    std::string file;  // of info and dump
+    // Said for the reader of a script; there is no other way yet.
+    bool full = false;
+    bool dump_json = false;
+    // The command. Set when the line has been parsed.
+    std::function<int()> run;
+};
+
+std::string joined(const std::vector<std::string>& words) {
+    return CLI::detail::join(words, ", ");
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+    const auto check = [words](const std::string& word) {
+        const bool known = std::ranges::find(words, word) != words.end();
+        return known ? std::string() : "takes one of " + joined(words) + ", not \"" + word + "\"";
+    };
+    return {check, ""};
+}
+
+CLI::Validator whole_number(std::size_t min, std::size_t max) {
+    const auto check = [=](const std::string& text) {
+        std::size_t number = 0;
+        if (CLI::detail::lexical_cast(text, number) && number >= min && number <= max)
+            return std::string();
+        return "takes a number from " + std::to_string(min) + " to " + std::to_string(max) + ", not \"" +
+               text + "\"";
+    };
+    return {check, ""};
+}
+
+// Infinity and what is no number are refused too.
+CLI::Validator metres_per_pixel() {
+    const auto check = [](const std::string& text) {
+        double number = 0;
+        if (CLI::detail::lexical_cast(text, number) && number > 0 && number < max_metres_per_pixel)
+            return std::string();
+        return "takes a number between 0 and 1000, not \"" + text + "\"";
+    };
+    return {check, ""};
+}
+
+void add_checks(CLI::App& app, CommandLine& line) {
+    CLI::App* validate = app.add_subcommand("validate", "Check sector files, or all of a folder");
+    ValidateRequest& request = line.validate;
+    validate->add_option("PATH", request.paths, "Files or folders")->required();
+    validate->add_flag("--json", request.json, "Print JSON, one object per line (report.schema.json)");
+    CLI::Option* quick =
+        validate->add_flag("--quick", request.quick, "Structure and checksums only: what a reader checks");
+    validate->add_flag("--full", line.full, "Everything: the default")->excludes(quick);
+    validate->add_flag("--neighbours", request.neighbours, "Also the sectors of a folder against each other")
+        ->excludes(quick);
+    validate->add_flag(
+        "--warnings-as-errors", request.warnings_as_errors, "A file with a warning is invalid too");
+    validate
+        ->add_option("--ignore", request.ignored, "Leave out findings of this code; drtv issues lists them")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("CODE");
+    validate->add_option("--max-findings", request.max_findings, "Findings shown per file")
+        ->check(whole_number(1, 1'000'000))
+        ->capture_default_str();
+    validate->callback([&line] { line.run = [&line] { return run_validate(line.validate); }; });
+
+    CLI::App* issues = app.add_subcommand("issues", "The table of all that validate can find");
+    issues->callback([&line] { line.run = run_issues; });
+}
+
+void add_views(CLI::App& app, CommandLine& line) {
+    CLI::App* info = app.add_subcommand("info", "What a sector file holds");
+    info->add_option("FILE", line.file, "A sector file")->required();
+    info->callback([&line] { line.run = [&line] { return run_info(line.file); }; });
+
+    CLI::App* dump = app.add_subcommand("dump", "Every number of a sector file as JSON");
+    dump->add_option("FILE", line.file, "A sector file")->required();
+    dump->add_flag("--json", line.dump_json, "As JSON: there is nothing else yet")->required();
+    dump->callback([&line] { line.run = [&line] { return run_dump(line.file); }; });
+
+    CLI::App* preview = app.add_subcommand("preview", "Picture of a region from above");
+    preview->add_option("PATH", line.preview.path, "A folder, or one file")->required();
+    preview->add_option("--out", line.preview.out, "The picture")->required()->type_name("FILE.png");
+    preview->add_option("--metres-per-pixel", line.preview.metres_per_pixel, "By default as fits the region")
+        ->check(metres_per_pixel());
+    preview
+        ->add_option(
+            "--quantity", line.preview.quantity, "What colours the probes: " + joined(preview_quantities()))
+        ->check(one_of(preview_quantities()))
+        ->capture_default_str();
+    preview->callback([&line] { line.run = [&line] { return run_preview(line.preview); }; });
+}
+
+// What --keep names: all and none stand alone.
+std::vector<std::string> kept_sections(const std::vector<std::string>& names) {
+    const std::vector<std::string> known = optional_section_names();
+    if (names == std::vector<std::string>{"all"})
+        return known;
+    if (names == std::vector<std::string>{"none"})
+        return {};
+    for (const std::string& name : names) {
+        if (std::ranges::find(known, name) == known.end())
+            throw CLI::ValidationError("--keep",
+                                       "\"" + name + "\" is no optional section: there are " + joined(known) +
+                                           "; all and none stand alone");
+    }
+    return names;
+}
+
+void add_strip(CLI::App& app, CommandLine& line) {
+    CLI::App* strip = app.add_subcommand("strip", "The same sectors with fewer sections, or compressed");
+    // Quality is for people who bake, the rest for games and their tools.
+    line.strip.keep = optional_section_names();
+    std::erase(line.strip.keep, "quality");
+    strip->add_option("PATH", line.strip.in, "A folder, or one file")->required();
+    strip->add_option("--out", line.strip.out, "Folder or file to write")->required();
+    strip
+        ->add_option_function<std::vector<std::string>>(
+            "--keep",
+            [&line](const std::vector<std::string>& names) { line.strip.keep = kept_sections(names); },
+            "Optional sections to keep: " + joined(optional_section_names()) +
+                "; all, or none; the default is all but quality")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("SECTION,...");
+    strip
+        ->add_option_function<std::string>(
+            "--codec",
+            [&line](const std::string& codec) { line.strip.compress = codec == "zstd"; },
+            "How sections are stored: raw, zstd; the default is raw")
+        ->check(one_of({"raw", "zstd"}));
+    strip->callback([&line] { line.run = [&line] { return run_strip(line.strip); }; });
+}
+
+void add_diff(CLI::App& app, CommandLine& line) {
+    CLI::App* diff = app.add_subcommand("diff", "What changed between two files or folders");
+    diff->add_option("A", line.diff.first, "A file or folder")->required();
+    diff->add_option("B", line.diff.second, "What it is compared with")->required();
+    diff->add_flag("--json", line.diff.json, "Print JSON, one object per line");
+    CLI::Option* png =
+        diff->add_option("--png", line.diff.png, "Draw what changed, from above")->type_name("FILE.png");
+    diff->add_option("--metres-per-pixel", line.diff.metres_per_pixel, "Of the picture")
+        ->check(metres_per_pixel())
+        ->needs(png);
+    diff->callback([&line] { line.run = [&line] { return run_diff(line.diff); }; });
+}
+
+// Gives the exit status.
+int end_parse(const CLI::App& app, const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0)
+        return app.exit(error);  // --help, --version
+    const auto commands = app.get_subcommands();
+    if (commands.empty() && !app.remaining().empty()) {
+        complain("there is no command \"" + app.remaining().front() + "\"; drtv --help lists them");
         return exit_usage;
     }
-    const std::string& command = arguments.front();
-    const Arguments rest = Arguments(arguments).subspan(1);
-    if (std::find(rest.begin(), rest.end(), "--help") != rest.end()) {
-        std::fputs(usage, stdout);
-        return exit_valid;
-    }
-    if (command == "validate")
-        return run_validate(rest);
-    if (command == "info")
-        return run_info(rest);
-    if (command == "dump")
-        return run_dump(rest);
-    if (command == "preview")
-        return run_preview(rest);
-    if (command == "strip")
-        return run_strip(rest);
-    if (command == "diff")
-        return run_diff(rest);
-    if (command == "issues")
-        return run_issues(rest);
-    if (command == "--help" || command == "-h" || command == "help") {
-        std::fputs(usage, stdout);
-        return exit_valid;
-    }
-    if (command == "--version") {
-        std::puts("drtv " DRTV_VERSION ", sector format 1." DRTV_VERSION_TEXT(DRTV_FORMAT_MINOR));
-        return exit_valid;
-    }
-    complain("unknown command \"" + command + "\"; drtv --help lists them");
+    const std::string command = commands.empty() ? "drtv" : "drtv " + commands.front()->get_name();
+    const std::string prefix = commands.empty() ? "" : commands.front()->get_name() + ": ";
+    complain(prefix + error.what() + "; " + command + " --help says more");
     return exit_usage;
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{"drtv validates, shows, compares and strips sector files.", "drtv"};
+    app.require_subcommand(1);
+    app.set_version_flag("--version",
+                         "drtv " DRTV_VERSION ", sector format 1." DRTV_VERSION_TEXT(DRTV_FORMAT_MINOR));
+    app.footer(
+        "drtv COMMAND --help lists a command's options.\n"
+        "Exit status: 0 valid or equal, 1 wrong usage, 2 a file cannot be read or written, 3 a file is "
+        "invalid,\n"
+        "4 diff found a difference");
+    CommandLine line;
+    add_checks(app, line);
+    add_views(app, line);
+    add_strip(app, line);
+    add_diff(app, line);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return end_parse(app, error);
+    }
+    return line.run();
 }
 
 }  // namespace
 }  // namespace drtv::tool
 
 int main(int argc, char** argv) {
-    const int exit_code = drtv::tool::run(std::vector<std::string>(argv + 1, argv + argc));
+    const int exit_code = drtv::tool::run(argc, argv);
     // A full disk behind a redirected stdout must not look like success.
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return exit_code;

@@ -1,5 +1,4 @@
-// PNG files, 8-bit RGB (PNG specification, third edition). Written here because format/ may depend on zstd
-// only.
+// PNG files, 8-bit RGB, encoded by stb.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +21,7 @@ struct Image {
     }
 };
 
+// Empty where memory is short.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);
 
 }  // namespace drtv::tool

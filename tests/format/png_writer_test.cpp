@@ -58,56 +58,11 @@ TEST(PngWriter, RandomPixelsAreReadBack) {
     }
 }
 
-TEST(PngWriter, FewColoursAreReadBack) {
-    // Many short matches at many distances.
-    std::mt19937 random(2);
-    expect_read_back(paint(300, 200, [&](auto...) { return static_cast<std::uint8_t>(random() % 2); }));
-    expect_read_back(paint(300, 200, [&](std::size_t x, std::size_t, std::size_t) {
-        return static_cast<std::uint8_t>(x % 7 == 0 ? random() % 3 : 0);
-    }));
-}
-
 TEST(PngWriter, SmoothPictureIsReadBackAndSmall) {
     const Image image = paint(640, 400, [](std::size_t x, std::size_t y, std::size_t c) {
         return static_cast<std::uint8_t>(x / 4 + y / 8 + 20 * c);
     });
     EXPECT_LT(expect_read_back(image), image.rgb.size() / 20);
-}
-
-TEST(PngWriter, OneColourIsReadBackAndSmall) {
-    // Matches of the greatest length, overlapping themselves.
-    const Image image = paint(1000, 700, [](auto...) { return std::uint8_t{200}; });
-    EXPECT_LT(expect_read_back(image), image.rgb.size() / 80);  // 13 bits for 258 bytes
-}
-
-TEST(PngWriter, RepeatsAroundTheWindowAreReadBack) {
-    // Rows of random bytes that come again after 32768 bytes less, exactly, and more: 3 width + 1 bytes a
-    // row.
-    std::mt19937 random(4);
-    for (std::size_t width : {10922u, 10923u, 5461u, 16383u}) {
-        std::vector<std::uint8_t> row(3 * width);
-        for (std::uint8_t& byte : row)
-            byte = static_cast<std::uint8_t>(random());
-        expect_read_back(
-            paint(width, 4, [&](std::size_t x, std::size_t, std::size_t c) { return row[3 * x + c]; }));
-        // Within a row too: 3 width bytes apart, of which 3 * 10923 is the first that is too far.
-        expect_read_back(paint(2 * width, 1, [&](std::size_t x, std::size_t, std::size_t c) {
-            return row[3 * (x % width) + c];
-        }));
-    }
-}
-
-TEST(PngWriter, EveryMatchLengthIsReadBack) {
-    // Runs of every length from 0 to 300 between random bytes.
-    std::mt19937 random(5);
-    std::vector<std::uint8_t> bytes;
-    for (std::size_t run = 0; run < 300; ++run) {
-        bytes.push_back(static_cast<std::uint8_t>(random()));
-        bytes.insert(bytes.end(), 3 * run, bytes.back());
-    }
-    const std::size_t width = bytes.size() / 3;
-    expect_read_back(
-        paint(width, 1, [&](std::size_t x, std::size_t, std::size_t c) { return bytes[3 * x + c]; }));
 }
 
 }  // namespace

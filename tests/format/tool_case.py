@@ -65,7 +65,7 @@ class Tool(unittest.TestCase):
         self.assertEqual(result.returncode, exit_code, (arguments, stdout[-500:], stderr))
         if err:
             self.assertIn(err, stderr)
-            self.assertTrue(stderr.startswith("drtv: ") or stderr.startswith("usage: "), stderr)
+            self.assertTrue(stderr.startswith("drtv: "), stderr)
         else:
             self.assertEqual(stderr, "")
         if out is not None:
