@@ -16,18 +16,15 @@ constexpr float red_back_hits = 0.05f;
 constexpr Float3 unknown_colour = {0.2f, 0.2f, 0.2f};
 
 // Clear sky at noon and a high sun, in units in which the sky's radiance is about one third.
-DistantLight noon_sky() {
-    return constant_sky({0.24f, 0.32f, 0.46f});
-}
-DistantLight noon_sun() {
-    constexpr Float3 to_sun = {0.40f, -0.30f, 0.866f};
-    return directional_sun({3.6f, 3.4f, 3.0f}, to_sun);
+SceneLight noon() {
+    return {.sky = constant_sky({0.24f, 0.32f, 0.46f}),
+            .sun = {.irradiance = {3.6f, 3.4f, 3.0f}, .direction = {0.40f, -0.30f, 0.866f}}};
 }
 
 // Ambient on a sphere: the mean over normals up and around and down, so that the bounce shows too.
 Float3 ambient_of(const Sector& sector, std::size_t p) {
-    static const DistantLight sky = noon_sky(), sun = noon_sun();
-    BasisColours colours = relight(sector.probes[p], sky, sun);
+    static const SceneLight light = noon();
+    BasisColours colours = relight(sector.probes[p].transfer, sector.probes[p].sky_visibility, light);
     if (!sector.static_irradiance.empty())
         add_static_irradiance(colours, sector.static_irradiance[p]);
     for (const LightGroup& group : sector.light_groups)
@@ -36,7 +33,7 @@ Float3 ambient_of(const Sector& sector, std::size_t p) {
     constexpr std::array<Float3, 6> normals = {
         {{0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, -1}}};
     for (const Float3& normal : normals) {
-        const Float3 ambient = shade_ambient(colours, normal);
+        const Float3 ambient = shade_ambient(light.mode, clamped(colours), normal);
         for (std::size_t c = 0; c < 3; ++c)
             sum[c] += ambient[c] / static_cast<float>(normals.size());
     }

@@ -24,8 +24,8 @@ constexpr std::array<char, channel_count> channel_name = {'r', 'g', 'b'};
 
 // A white sky of radiance 1, and what falls on a probe from it.
 BasisColours relit_of(const Sector& sector, std::size_t p) {
-    static const DistantLight sky = constant_sky({1, 1, 1});
-    BasisColours colours = relight(sector.probes[p], sky, {});
+    static const SceneLight white{.sky = constant_sky({1, 1, 1})};
+    BasisColours colours = relight(sector.probes[p].transfer, sector.probes[p].sky_visibility, white);
     if (!sector.static_irradiance.empty())
         add_static_irradiance(colours, sector.static_irradiance[p]);
     for (const LightGroup& group : sector.light_groups)

@@ -78,8 +78,9 @@ int main(int, char** argv) {
 #endif
     if (!status.ok())
         return 1;
-    const auto colours =
-        drtv::relight(sector.transfer[0], sector.sky_visibility[0], drtv::constant_sky({1, 1, 1}), {});
+    drtv::SceneLight light;
+    light.sky = drtv::constant_sky({1, 1, 1});
+    const drtv::BasisColours colours = drtv::relight(sector, 0, light);
     std::printf("%zu probes, from below %.4f\n", sector.probe_count, static_cast<double>(colours[3][0]));
 }
 GAME

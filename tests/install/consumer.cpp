@@ -9,7 +9,9 @@ int main(int, char** argv) {
     if (!drtv::open_sector({bytes, std::fread(bytes, 1, sizeof bytes, std::fopen(argv[1], "rb"))}, sector)
              .ok())
         return 1;
-    const auto colours =
-        drtv::relight(sector.transfer[0], sector.sky_visibility[0], drtv::constant_sky({1, 1, 1}), {});
+    drtv::SceneLight light;
+    light.sky = drtv::constant_sky({1, 1, 1});
+    const drtv::BasisColours colours =
+        sector.probe_count > 0 ? drtv::relight(sector, 0, light) : drtv::open_sky(light);
     std::printf("%zu probes, from below %.4f\n", sector.probe_count, static_cast<double>(colours[3][0]));
 }

@@ -1,38 +1,69 @@
-// Relighting a probe on the CPU (s27-s32) and shading with its colours (s40-s44), as the talk's code does it.
-// All colours are E/pi, linear Rec. 709. No allocation.
+// Relighting probes on the CPU: from what a sector file holds and the light of the moment to four colours per
+// probe (slides 26 to 32 of the talk, see drtv/light.h), and from these to the ambient light at a normal
+// (slides 40 to 44).
+//
+// Colours are E/pi: what a white Lambert surface would radiate, in the unit of the light. All calls are pure
+// and thread-safe, none allocates, and results have the same bits on every CPU. Cost: some 10 ns per probe.
+//
+//     const drtv::BasisColours colours = drtv::relight(sector, probe, light);
+//     const drtv::Float3 ambient = drtv::shade_ambient(light.mode, colours, normal);
 #pragma once
 
+#include <drtv/light.h>
 #include <drtv/sector.h>
+#include <drtv/view.h>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 namespace drtv {
 
-// Radiance of the distant light as SH, a vector a channel: [r, g, b][Y0..Y3].
-using DistantLight = std::array<Float4, channel_count>;
-
-// What a relit probe is: one colour for each direction of the transfer basis.
+// What a relit probe is: one colour for each direction of the transfer basis, [b][r, g, b].
 using BasisColours = std::array<Float3, basis_count>;
 
-// Sky of one radiance over the upper hemisphere, written as the constant SH the exact answers use.
-[[nodiscard]] DistantLight constant_sky(const Float3& radiance);
+// A `SceneLight` made ready for many probes of one sector.
+class ProbeRelighter {
+  public:
+    // The names of light groups are looked up here. `sector` must outlive this.
+    ProbeRelighter(const SectorView& sector, const SceneLight& light);
 
-// SH of a sun of `irradiance` (on a surface facing it) towards the unit direction `to_sun`.
-[[nodiscard]] DistantLight directional_sun(const Float3& irradiance, const Float3& to_sun);
+    // Bounce of sky and sun, the sky's direct light by its visibility, and the map's own lights. Not clamped:
+    // where two bands cannot follow the light, a colour may be below 0. REQUIRES: p < sector.probe_count.
+    [[nodiscard]] BasisColours operator()(std::size_t p) const;
 
-// Bounce of sky and sun plus the direct sky weighted by visibility (s28-s29).
-[[nodiscard]] BasisColours relight(const Probe& probe, const DistantLight& sky, const DistantLight& sun);
-// The same from a probe's codes where they lie (drtv/view.h).
+  private:
+    // Factor of the codes of one section: 1/32767 is in it, a probe's exponent is not.
+    struct Group {
+        std::size_t index;
+        Float3 factor;
+    };
+
+    const SectorView* sector_;
+    DistantLight bounce_{};                           // [c][i], of transfer codes
+    std::array<Float4, channel_count> sky_direct_{};  // [c][b], of visibility codes
+    Float3 static_factor_{};
+    std::array<Group, max_light_groups> groups_{};
+    std::size_t group_count_ = 0;
+};
+
+// One probe. REQUIRES: p < sector.probe_count.
+[[nodiscard]] BasisColours relight(const SectorView& sector, std::size_t p, const SceneLight& light);
+// Sun and sky alone, from a probe's codes.
 [[nodiscard]] BasisColours relight(const TransferCodes& transfer,
                                    const VisibilityCodes& sky_visibility,
-                                   const DistantLight& sky,
-                                   const DistantLight& sun);
+                                   const SceneLight& light);
 
-// Adds the light of the map's own lights, which no time of day changes. `tint` scales the channels of a light
-// group: 1 is its lights as they are in the map, 0 is off.
+// Where a colour leaves relighting for shading or a texture, nothing is below 0. What is not a number is 0.
+[[nodiscard]] BasisColours clamped(const BasisColours& colours);
+
+// What each basis direction sees of an open sky: visibility 1, nothing bounced. Not clamped.
+[[nodiscard]] BasisColours open_sky(const SceneLight& light);
+
+// Adds the light of the map's own lights to colours. `factor` scales the channels.
 void add_static_irradiance(BasisColours& colours,
                            const StaticIrradiance& light,
-                           const Float3& tint = {1, 1, 1});
+                           const Float3& factor = {1, 1, 1});
 
 // What a light at a local source adds to the ambient light at a unit normal, by bounce: its direct light is
 // the game's. `pair` and `scale` are what find_local_pair gives, `intensity` is the light's in W/sr.
@@ -44,7 +75,10 @@ void add_static_irradiance(BasisColours& colours,
                                  const Float3& intensity,
                                  const Float3& normal);
 
-// Ambient at a unit normal by the basis weights of the shader (s43-s44).
-[[nodiscard]] Float3 shade_ambient(const BasisColours& colours, const Float3& normal);
+// Weights of the four colours at a unit normal. A normal without a length gives defined weights too.
+[[nodiscard]] Float4 basis_weights(RelightMode mode, const Float3& normal);
+
+// The ambient light at a unit normal; nothing below 0. REQUIRES: colours are clamped.
+[[nodiscard]] Float3 shade_ambient(RelightMode mode, const BasisColours& colours, const Float3& normal);
 
 }  // namespace drtv

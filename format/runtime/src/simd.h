@@ -1,0 +1,145 @@
+// Four floats at once, with the same bits from SSE2, NEON and plain C++: each operation is rounded by itself,
+// in the order in which it is written. DRTV_SCALAR chooses the plain one.
+#pragma once
+
+#include <cstdint>
+
+#if defined(__FAST_MATH__)
+#error "drtv must not be compiled with -ffast-math: its results are the same everywhere"
+#endif
+
+#if !defined(DRTV_SCALAR) && defined(__SSE2__)
+#define DRTV_SSE2
+#include <emmintrin.h>
+#elif !defined(DRTV_SCALAR) && defined(__aarch64__)
+#define DRTV_NEON
+#include <arm_neon.h>
+#endif
+
+namespace drtv {
+
+#if defined(DRTV_SSE2)
+
+struct Lanes {
+    __m128 v;
+};
+inline Lanes splat(float x) {
+    return {_mm_set1_ps(x)};
+}
+inline Lanes load(const float* x) {
+    return {_mm_loadu_ps(x)};
+}
+inline void store(Lanes a, float* x) {
+    _mm_storeu_ps(x, a.v);
+}
+inline Lanes operator+(Lanes a, Lanes b) {
+    return {_mm_add_ps(a.v, b.v)};
+}
+inline Lanes operator*(Lanes a, Lanes b) {
+    return {_mm_mul_ps(a.v, b.v)};
+}
+// What is not a number becomes 0.
+inline Lanes at_least_zero(Lanes a) {
+    return {_mm_max_ps(a.v, _mm_setzero_ps())};
+}
+inline Lanes low_half_of(__m128i codes) {
+    return {_mm_cvtepi32_ps(_mm_srai_epi32(_mm_unpacklo_epi16(codes, codes), 16))};
+}
+inline Lanes high_half_of(__m128i codes) {
+    return {_mm_cvtepi32_ps(_mm_srai_epi32(_mm_unpackhi_epi16(codes, codes), 16))};
+}
+inline Lanes load_codes(const std::int16_t* codes) {
+    return low_half_of(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(codes)));
+}
+// 16 codes [b][i]; out[i] holds those of the four b.
+inline void load_columns(const std::int16_t* codes, Lanes (&out)[4]) {
+    const __m128i rows01 = _mm_loadu_si128(reinterpret_cast<const __m128i*>(codes));
+    const __m128i rows23 = _mm_loadu_si128(reinterpret_cast<const __m128i*>(codes + 8));
+    const __m128i even = _mm_unpacklo_epi16(rows01, rows23);
+    const __m128i odd = _mm_unpackhi_epi16(rows01, rows23);
+    const __m128i columns01 = _mm_unpacklo_epi16(even, odd);
+    const __m128i columns23 = _mm_unpackhi_epi16(even, odd);
+    out[0] = low_half_of(columns01);
+    out[1] = high_half_of(columns01);
+    out[2] = low_half_of(columns23);
+    out[3] = high_half_of(columns23);
+}
+
+#elif defined(DRTV_NEON)
+
+struct Lanes {
+    float32x4_t v;
+};
+inline Lanes splat(float x) {
+    return {vdupq_n_f32(x)};
+}
+inline Lanes load(const float* x) {
+    return {vld1q_f32(x)};
+}
+inline void store(Lanes a, float* x) {
+    vst1q_f32(x, a.v);
+}
+inline Lanes operator+(Lanes a, Lanes b) {
+    return {vaddq_f32(a.v, b.v)};
+}
+inline Lanes operator*(Lanes a, Lanes b) {
+    return {vmulq_f32(a.v, b.v)};
+}
+inline Lanes at_least_zero(Lanes a) {
+    return {vmaxnmq_f32(a.v, vdupq_n_f32(0))};
+}
+inline Lanes load_codes(const std::int16_t* codes) {
+    return {vcvtq_f32_s32(vmovl_s16(vld1_s16(codes)))};
+}
+inline void load_columns(const std::int16_t* codes, Lanes (&out)[4]) {
+    const int16x4x4_t columns = vld4_s16(codes);
+    for (int i = 0; i < 4; ++i)
+        out[i] = {vcvtq_f32_s32(vmovl_s16(columns.val[i]))};
+}
+
+#else
+
+struct Lanes {
+    float v[4];
+};
+inline Lanes splat(float x) {
+    return {{x, x, x, x}};
+}
+inline Lanes load(const float* x) {
+    return {{x[0], x[1], x[2], x[3]}};
+}
+inline void store(Lanes a, float* x) {
+    for (int n = 0; n < 4; ++n)
+        x[n] = a.v[n];
+}
+inline Lanes operator+(Lanes a, Lanes b) {
+    for (int n = 0; n < 4; ++n)
+        a.v[n] += b.v[n];
+    return a;
+}
+inline Lanes operator*(Lanes a, Lanes b) {
+    for (int n = 0; n < 4; ++n)
+        a.v[n] *= b.v[n];
+    return a;
+}
+inline Lanes at_least_zero(Lanes a) {
+    for (float& x : a.v)
+        x = x > 0 ? x : 0;
+    return a;
+}
+inline Lanes load_codes(const std::int16_t* codes) {
+    Lanes a;
+    for (int n = 0; n < 4; ++n)
+        a.v[n] = static_cast<float>(codes[n]);
+    return a;
+}
+inline void load_columns(const std::int16_t* codes, Lanes (&out)[4]) {
+    for (int i = 0; i < 4; ++i) {
+        for (int b = 0; b < 4; ++b)
+            out[i].v[b] = static_cast<float>(codes[4 * b + i]);
+    }
+}
+
+#endif
+
+}  // namespace drtv
