@@ -13,7 +13,8 @@ import tempfile
 ARROWS = {
     "format": set(),
     "format/runtime": {"format"},
-    "format/tool": {"format", "format/runtime"},
+    "format/light": {"format", "format/runtime"},
+    "format/tool": {"format", "format/runtime", "format/light"},
     "placement": set(),
     "bakerd/map": set(),
     "bakerd/trace": {"bakerd/map", "placement"},
@@ -50,7 +51,7 @@ FOREIGN = {
     r"(sqlite3\.h|SQLiteCpp/)": {"bakerd/farm"},
     r"(grpcpp|grpc)/": {"bakerd/service", "client"},
     r"google/protobuf/": {"bakerd/service"},
-    r"nlohmann/": {"bakerd/map", "bakerd/store", "bakerd/worker", "client"},
+    r"nlohmann/": {"format/light", "format/tool", "bakerd/map", "bakerd/store", "bakerd/worker", "client"},
     r"openssl/": {"bakerd/map", "client"},
     r"CLI/": {"bakerd", "client", "format/tool"},
     r"spdlog/": {"bakerd", "bakerd/worker", "bakerd/farm", "bakerd/service"},
@@ -84,7 +85,11 @@ FOREIGN = {
 FORBIDDEN_NAMES = {"util", "utils", "common", "core", "helper", "helpers", "manager"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]', re.MULTILINE)
 # Public headers of format/ and runtime are included as <drtv/...>; which room one belongs to is looked up.
-PUBLIC_ROOTS = {"format/include": "format", "format/runtime/include": "format/runtime"}
+PUBLIC_ROOTS = {
+    "format/include": "format",
+    "format/runtime/include": "format/runtime",
+    "format/light/include": "format/light",
+}
 
 
 def room_of(path):

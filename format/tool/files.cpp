@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -61,6 +62,50 @@ FileRead read_file(const std::string& path) {
     if (failed)
         return {{}, "cannot read " + path + ": " + reason()};
     return {std::move(bytes), {}};
+}
+
+namespace {
+
+// Reads to the end. REQUIRES: `file` is open.
+TextRead read_rest(std::FILE* file, const std::string& name) {
+    TextRead read;
+    char buffer[65536];
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
+        read.text.append(buffer, n);
+    if (std::ferror(file) != 0)
+        read.error = "cannot read " + name + ": " + reason();
+    return read;
+}
+
+}  // namespace
+
+TextRead read_text(const std::string& path) {
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (file == nullptr)
+        return {{}, "cannot read " + path + ": " + reason()};
+    TextRead read = read_rest(file, path);
+    std::fclose(file);
+    return read;
+}
+
+TextRead read_standard_input() {
+    return read_rest(stdin, "standard input");
+}
+
+std::optional<std::pair<std::int32_t, std::int32_t>> sector_of_file(const std::string& path) {
+    constexpr std::size_t sector_at = 16;  // in the header (SPEC.md, section 4.1): i, then j
+    std::array<std::uint8_t, sector_at + 8> head{};
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (file == nullptr)
+        return std::nullopt;
+    const bool whole = std::fread(head.data(), 1, head.size(), file) == head.size();
+    std::fclose(file);
+    if (!whole || !may_be_sector(FileBytes(head.begin(), head.end())))
+        return std::nullopt;
+    std::pair<std::int32_t, std::int32_t> sector;
+    std::memcpy(&sector.first, &head[sector_at], sizeof sector.first);
+    std::memcpy(&sector.second, &head[sector_at + 4], sizeof sector.second);
+    return sector;
 }
 
 std::string write_file(const std::string& link, const FileBytes& bytes) {

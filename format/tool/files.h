@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace drtv::tool {
@@ -23,6 +24,17 @@ struct FileRead {
 
 // All bytes of the file. Of one that does not begin as a sector file does, only the beginning.
 [[nodiscard]] FileRead read_file(const std::string& path);
+
+struct TextRead {
+    std::string text;
+    std::string error;  // as above
+};
+[[nodiscard]] TextRead read_text(const std::string& path);
+[[nodiscard]] TextRead read_standard_input();
+
+// The sector (i, j) that a file's header names, where it begins as a sector file does; nothing where it
+// cannot be read.
+[[nodiscard]] std::optional<std::pair<std::int32_t, std::int32_t>> sector_of_file(const std::string& path);
 
 // Writes the file whole or not at all (temporary file, then rename), through links. Gives a sentence where it
 // fails: also for what is there and no regular file.

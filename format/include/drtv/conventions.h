@@ -12,6 +12,7 @@ namespace drtv {
 
 using Float3 = std::array<float, 3>;
 using Float4 = std::array<float, 4>;
+using Double3 = std::array<double, 3>;  // places in the world, in metres
 
 // World: right-handed, z up, metres. A sector is a square of this side, all heights (s24).
 inline constexpr int sector_size_m = 64;

@@ -91,7 +91,7 @@ ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::u
 // The probe that lights a world position outside of all interiors (find_interior is asked first), by the grid
 // (SPEC.md, section 5.5); `no_probe` where the cell has none: then nothing is added. What is beside, above or
 // below the grid takes the nearest cell.
-[[nodiscard]] std::uint8_t find_probe(const SectorView& sector, const Float3& world_m);
+[[nodiscard]] std::uint8_t find_probe(const SectorView& sector, const Double3& world_m);
 
 // REQUIRES: the sector has static irradiance, p < sector.probe_count.
 [[nodiscard]] StaticIrradiance static_irradiance_of(const SectorView& sector, std::size_t p);
@@ -120,9 +120,24 @@ struct LocalPair {
 
 // Whether a world position is inside the closed mesh, by its winding number, so that triangles without an
 // area do no harm; on the mesh itself either.
-[[nodiscard]] bool is_inside(const SectorView& sector, const StoredInterior& interior, const Float3& world_m);
+[[nodiscard]] bool is_inside(const SectorView& sector,
+                             const StoredInterior& interior,
+                             const Double3& world_m);
+
+// Bounds in the world, in metres; of an interior without vertices, one that holds nothing.
+struct InteriorBounds {
+    Double3 low{};
+    Double3 high{};
+};
+[[nodiscard]] InteriorBounds bounds_of(const SectorView& sector, const StoredInterior& interior);
+
+// Distance in metres from a world position to the closed mesh: above 0 inside, below 0 outside. Looks at
+// every triangle. Of an interior without triangles, minus infinity.
+[[nodiscard]] double signed_distance_m(const SectorView& sector,
+                                       const StoredInterior& interior,
+                                       const Double3& world_m);
 
 // The first interior that holds a world position; null where none does.
-[[nodiscard]] const StoredInterior* find_interior(const SectorView& sector, const Float3& world_m);
+[[nodiscard]] const StoredInterior* find_interior(const SectorView& sector, const Double3& world_m);
 
 }  // namespace drtv

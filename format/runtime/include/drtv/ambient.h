@@ -1,0 +1,56 @@
+// The ambient light at a place and a normal, worked out on the CPU from the files themselves: for what a game
+// lights there (particles, characters' queries), and what every shader is checked against.
+//
+// Pure, thread-safe, no allocation. Cost: 0.1 us by the nearest probe to 1 us between eight, more in
+// interiors.
+//
+//     const drtv::Ambient ambient = drtv::ambient_at(set, light, {}, {.at = {x, y, z}, .normal = n});
+//     use(ambient.colour);
+#pragma once
+
+#include <drtv/local_lights.h>
+#include <drtv/relight.h>
+#include <drtv/sector_set.h>
+
+#include <cstdint>
+#include <span>
+
+namespace drtv {
+
+enum class Sampling : std::uint8_t { nearest, trilinear };
+
+struct AmbientPlace {
+    Double3 at{};            // metres
+    Float3 normal{0, 0, 1};  // unit
+    Sampling sampling = Sampling::trilinear;
+    float offset_m = 0;  // probes are asked so far along the normal; interiors at the place itself
+    bool interiors = true;
+    float interior_soft_m = 1;
+};
+
+// What the colour is made of; they add up to it where nothing is below 0.
+struct AmbientParts {
+    Float3 sky_direct{};
+    Float3 sky_bounce{};
+    Float3 sun_bounce{};
+    Float3 static_light{};  // with light groups
+    Float3 local{};         // lamps that move
+    Float3 fallback{};      // an open sky times sky_factor, where no probe is known
+};
+
+struct Ambient {
+    PlaceStatus status = PlaceStatus::sector_missing;
+    ProbeShare probe;  // that the grid names for the place; sector is null where it names none
+    InteriorShare interior;
+    BasisColours colours{};  // E/pi; of each probe nothing below 0
+    AmbientParts parts;      // at the normal
+    Float3 colour{};         // E/pi at the normal, nothing below 0
+};
+
+// What is not finite gives the fallback. `lights`: what split_light made of all lamps.
+[[nodiscard]] Ambient ambient_at(const SectorSet& set,
+                                 const SceneLight& light,
+                                 std::span<const LightShare> lights,
+                                 const AmbientPlace& place);
+
+}  // namespace drtv

@@ -1,0 +1,75 @@
+// The bounce of lamps that move (slides 23, 30 and 31 of the talk, see drtv/light.h): a lamp is split between
+// the probes around it, and what each of these sends to others by bounce stands in the files (local
+// transfer). The lamp's direct light is the game's own.
+//
+// Pure functions, thread-safe, no allocation.
+//
+//     std::array<drtv::LightShare, drtv::max_shares_per_light> shares;
+//     std::size_t count = drtv::split_light(set, {.position = at, .intensity = {50, 40, 30}}, shares);
+//     drtv::LocalRelighter local(*sector, {shares.data(), count});
+//     local.add_to(colours, probe);
+#pragma once
+
+#include <drtv/relight.h>
+#include <drtv/sector_set.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace drtv {
+
+// A lamp that shines alike to all sides. A spot counts by its flux: intensity = flux / (4 pi).
+struct PointLight {
+    Double3 position{};
+    Float3 intensity{};  // W/sr, by channel
+};
+
+// A part of a lamp that stands, for its bounce, at the place of a probe.
+struct LightShare {
+    SectorId sector;  // of the probe
+    std::uint8_t probe = 0;
+    Double3 source{};    // the probe's place
+    Double3 light{};     // the lamp's
+    Float3 intensity{};  // W/sr: the lamp's times the share
+};
+
+inline constexpr std::size_t max_shares_per_light = 8;
+
+// Splits by the eight cells of the grid around the lamp, each to the probe that its centre sees, so that
+// shares change continuously while it moves. A lamp inside an interior goes to the interior's probe alone;
+// none outside goes to a probe that an interior names. Shares add up to 1 over the probes there are; nothing
+// where there is none, or where the lamp is not finite or dark. Gives how many it wrote. REQUIRES: room for
+// max_shares_per_light.
+[[nodiscard]] std::size_t split_light(const SectorSet& set,
+                                      const PointLight& light,
+                                      std::span<LightShare> shares);
+
+// Shares made ready for the probes of one sector.
+class LocalRelighter {
+  public:
+    static constexpr std::size_t max_shares = 512;  // that reach one sector
+
+    // Shares farther than a sector away, and those behind the first max_shares of the rest, bring nothing.
+    LocalRelighter(const LoadedSector& sector, std::span<const LightShare> shares);
+
+    // Adds what probe p gets. A lamp beside its source shines into fewer faces from near: each pair takes the
+    // factor min(1, (|source - p|^2 + a^2) / (|lamp - p|^2 + a^2)), a = 1.5 m. REQUIRES: p <
+    // view.probe_count.
+    void add_to(BasisColours& colours, std::size_t p) const;
+    // True where nothing is added to any probe.
+    [[nodiscard]] bool empty() const { return count_ == 0; }
+
+  private:
+    struct Source {
+        std::uint16_t index;
+        const LightShare* share;
+    };
+
+    const SectorView* sector_;
+    std::array<Source, max_shares> sources_;
+    std::size_t count_ = 0;
+};
+
+}  // namespace drtv

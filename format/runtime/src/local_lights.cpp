@@ -1,0 +1,128 @@
+#include <drtv/local_lights.h>
+
+#include "simd.h"
+#include "vector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drtv {
+namespace {
+
+// Of the factor for a pair: about a probe's height over what it lights.
+constexpr double near_m = 1.5;
+
+Double3 place_of(const SectorView& sector, std::size_t p) {
+    const StoredPosition& stored = sector.positions[p];
+    constexpr std::int64_t side = sector_size_m * position_units_per_m;
+    const std::int64_t x = sector.i * side + stored.position[0];
+    const std::int64_t y = sector.j * side + stored.position[1];
+    const std::int64_t z = sector.z_origin_units + (std::int64_t{stored.position[2]} << sector.z_shift);
+    const auto metres = [](std::int64_t units) { return static_cast<double>(units) / position_units_per_m; };
+    return {metres(x), metres(y), metres(z)};
+}
+
+double squared_distance(const Double3& a, const Double3& b) {
+    const double x = a[0] - b[0];
+    const double y = a[1] - b[1];
+    const double z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+bool is_named_by_interior(const SectorView& sector, std::uint8_t probe) {
+    return std::any_of(sector.interiors.begin(), sector.interiors.end(), [&](const StoredInterior& interior) {
+        return interior.probe == probe;
+    });
+}
+
+LightShare share_of(const PointLight& light, const SectorView& sector, std::uint8_t probe, float share) {
+    LightShare part;
+    part.sector = {sector.i, sector.j};
+    part.probe = probe;
+    part.source = place_of(sector, probe);
+    part.light = light.position;
+    for (std::size_t c = 0; c < channel_count; ++c)
+        part.intensity[c] = light.intensity[c] * share;
+    return part;
+}
+
+bool shines(const PointLight& light) {
+    const Float3& c = light.intensity;
+    const bool placed = std::isfinite(light.position[0]) && std::isfinite(light.position[1]) &&
+                        std::isfinite(light.position[2]);
+    return placed && is_finite(c) && (c[0] != 0 || c[1] != 0 || c[2] != 0);
+}
+
+}  // namespace
+
+std::size_t split_light(const SectorSet& set, const PointLight& light, std::span<LightShare> shares) {
+    if (!shines(light))
+        return 0;
+    if (const InteriorShare room = set.interior(light.position, 0); room.sector != nullptr) {
+        const SectorView& sector = room.sector->view;
+        shares[0] = share_of(light, sector, sector.interiors[room.index].probe, 1);
+        return 1;
+    }
+    ProbeBlend blend = set.trilinear(light.position);
+    float sum = 0;
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < blend.count; ++n) {
+        const ProbeShare& probe = blend.probes[n];
+        if (is_named_by_interior(probe.sector->view, probe.probe))
+            continue;
+        sum += probe.share;
+        blend.probes[count++] = probe;
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+        const ProbeShare& probe = blend.probes[n];
+        shares[n] = share_of(light, probe.sector->view, probe.probe, probe.share / sum);
+    }
+    return count;
+}
+
+LocalRelighter::LocalRelighter(const LoadedSector& sector, std::span<const LightShare> shares)
+    : sector_(&sector.view) {
+    const std::span<const LocalSource> sources = sector_->local_sources;
+    for (const LightShare& share : shares) {
+        const std::int64_t di = std::int64_t{share.sector.i} - sector_->i;
+        const std::int64_t dj = std::int64_t{share.sector.j} - sector_->j;
+        if (std::abs(di) > 1 || std::abs(dj) > 1 || count_ == max_shares)
+            continue;
+        const auto source = std::find_if(sources.begin(), sources.end(), [&](const LocalSource& s) {
+            return s.probe == share.probe && s.di == di && s.dj == dj;
+        });
+        if (source != sources.end())
+            sources_[count_++] = {static_cast<std::uint16_t>(source - sources.begin()), &share};
+    }
+}
+
+void LocalRelighter::add_to(BasisColours& colours, std::size_t p) const {
+    const Double3 receiver = place_of(*sector_, p);
+    std::array<Lanes, channel_count> sums = {splat(0), splat(0), splat(0)};
+    bool any = false;
+    for (std::size_t n = 0; n < count_; ++n) {
+        const auto [codes, scale] = find_local_pair(*sector_, p, sources_[n].index);
+        if (codes == nullptr)
+            continue;
+        any = true;
+        const LightShare& share = *sources_[n].share;
+        const double from_source = squared_distance(share.source, receiver) + near_m * near_m;
+        const double from_light = squared_distance(share.light, receiver) + near_m * near_m;
+        const float factor = static_cast<float>(std::min(1.0, from_source / from_light));
+        const float per_code = scale / fixed_point_max * factor;
+        for (std::size_t c = 0; c < channel_count; ++c)
+            sums[c] = sums[c] + load_codes((*codes)[c].data()) * splat(per_code * share.intensity[c]);
+    }
+    if (!any)
+        return;
+    for (std::size_t c = 0; c < channel_count; ++c) {
+        Float4 local;
+        store(sums[c], local.data());
+        for (std::size_t b = 0; b < basis_count; ++b) {
+            const Float4 y = evaluate_sh(transfer_basis[b]);
+            colours[b][c] += (local[0] * y[0] + local[2] * y[2]) + (local[1] * y[1] + local[3] * y[3]);
+        }
+    }
+}
+
+}  // namespace drtv

@@ -1,0 +1,157 @@
+#include "command_relight.h"
+
+#include "commands.h"
+#include "json_writer.h"
+#include "relight_points.h"
+#include "sector_folder.h"
+
+#include <drtv/ambient.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace drtv::tool {
+namespace {
+
+const char* name_of(PlaceStatus status) {
+    switch (status) {
+        case PlaceStatus::inside:
+            return "inside";
+        case PlaceStatus::fading:
+            return "fading";
+        case PlaceStatus::sector_missing:
+            return "no_sector";
+        case PlaceStatus::probe_missing:
+            break;
+    }
+    return "no_probe";
+}
+
+void append_reference(JsonWriter& json, const char* key, const LoadedSector* sector, std::uint32_t index) {
+    json.key(key);
+    if (sector == nullptr) {
+        json.null();
+        return;
+    }
+    json.begin_object().key("sector").begin_array().value(sector->view.i).value(sector->view.j).end_array();
+    json.member("index", index);
+    json.end_object();
+}
+
+void print_json(const RelightPoint& point, const Ambient& ambient) {
+    JsonWriter json;
+    json.begin_object().key("at").array(point.at).key("normal").array(point.normal);
+    json.member("status", name_of(ambient.status));
+    append_reference(json, "probe", ambient.probe.sector, ambient.probe.probe);
+    append_reference(json, "interior", ambient.interior.sector, ambient.interior.index);
+    json.key("basis_colours").begin_array();
+    for (const Float3& colour : ambient.colours)
+        json.array(colour);
+    json.end_array();
+    const AmbientParts& parts = ambient.parts;
+    json.key("parts").begin_object();
+    json.key("sky_direct").array(parts.sky_direct);
+    json.key("sky_bounce").array(parts.sky_bounce);
+    json.key("sun_bounce").array(parts.sun_bounce);
+    json.key("static").array(parts.static_light);
+    json.key("local").array(parts.local);
+    json.key("fallback").array(parts.fallback);
+    json.end_object();
+    json.key("colour").array(ambient.colour).end_object();
+    std::puts(json.text().c_str());
+}
+
+std::string shown(const LoadedSector* sector, std::uint32_t index) {
+    if (sector == nullptr)
+        return "-";
+    return "(" + std::to_string(sector->view.i) + ", " + std::to_string(sector->view.j) + ") " +
+           std::to_string(index);
+}
+
+void print_row(const RelightPoint& point, const Ambient& ambient) {
+    const auto& [x, y, z] = point.at;
+    const auto& [nx, ny, nz] = point.normal;
+    const auto& [r, g, b] = ambient.colour;
+    std::printf("%10.3f %10.3f %9.3f  %6.3f %6.3f %6.3f  %-9s  %-14s  %-14s  %10.5g %10.5g %10.5g\n",
+                x,
+                y,
+                z,
+                static_cast<double>(nx),
+                static_cast<double>(ny),
+                static_cast<double>(nz),
+                name_of(ambient.status),
+                shown(ambient.probe.sector, ambient.probe.probe).c_str(),
+                shown(ambient.interior.sector, ambient.interior.index).c_str(),
+                static_cast<double>(r),
+                static_cast<double>(g),
+                static_cast<double>(b));
+}
+
+void print_head() {
+    std::printf("%10s %10s %9s  %6s %6s %6s  %-9s  %-14s  %-14s  %10s %10s %10s\n",
+                "x",
+                "y",
+                "z",
+                "nx",
+                "ny",
+                "nz",
+                "status",
+                "probe",
+                "interior",
+                "r",
+                "g",
+                "b");
+}
+
+// Gives the exit code.
+int read_places(const RelightRequest& request, std::vector<RelightPoint>& points) {
+    if (request.points)
+        return read_points(*request.points, points);
+    return read_point(request.at, request.normal, points) ? exit_valid : exit_usage;
+}
+
+}  // namespace
+
+int run_relight(const RelightRequest& request) {
+    RequestedLight requested;
+    if (const int exit_code = read_light(request.light, requested); exit_code != exit_valid)
+        return exit_code;
+    std::vector<RelightPoint> points;
+    if (const int exit_code = read_places(request, points); exit_code != exit_valid)
+        return exit_code;
+
+    std::vector<Double3> places;
+    for (const RelightPoint& point : points)
+        places.push_back(point.at);
+    for (const PointLight& lamp : requested.lamps)
+        places.push_back(lamp.position);
+    SectorFolder folder;
+    if (const int exit_code = folder.load(request.folder, places); exit_code != exit_valid)
+        return exit_code;
+
+    std::vector<LightShare> lights;
+    for (const PointLight& lamp : requested.lamps) {
+        std::array<LightShare, max_shares_per_light> shares;
+        const std::size_t count = split_light(folder.set(), lamp, shares);
+        lights.insert(lights.end(), shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+    if (!request.json)
+        print_head();
+    for (const RelightPoint& point : points) {
+        AmbientPlace place;
+        place.at = point.at;
+        place.normal = point.normal;
+        place.sampling = request.by == "nearest" ? Sampling::nearest : Sampling::trilinear;
+        place.offset_m = static_cast<float>(request.offset_m);
+        place.interiors = request.interiors;
+        const Ambient ambient = ambient_at(folder.set(), requested.light, lights, place);
+        if (request.json)
+            print_json(point, ambient);
+        else
+            print_row(point, ambient);
+    }
+    return exit_valid;
+}
+
+}  // namespace drtv::tool

@@ -1,0 +1,24 @@
+// drtv relight: the light at places, as a game would see it.
+#pragma once
+
+#include "scene_light.h"
+
+#include <optional>
+#include <string>
+
+namespace drtv::tool {
+
+struct RelightRequest {
+    std::string folder;
+    std::string at;      // x,y,z; where there is no `points`
+    std::string normal;  // x,y,z
+    std::optional<std::string> points;
+    std::string by = "trilinear";  // nearest, trilinear
+    double offset_m = 0;
+    bool interiors = true;
+    bool json = false;
+    LightRequest light;
+};
+int run_relight(const RelightRequest& request);
+
+}  // namespace drtv::tool

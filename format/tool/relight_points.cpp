@@ -1,0 +1,102 @@
+#include "relight_points.h"
+
+#include "commands.h"
+#include "files.h"
+#include "number_list.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+
+namespace drtv::tool {
+namespace {
+
+using nlohmann::json;
+
+std::optional<Float3> unit(const Double3& v) {
+    const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    if (!(length > 0) || !std::isfinite(length))
+        return std::nullopt;
+    const Double3 divided = {v[0] / length, v[1] / length, v[2] / length};
+    return float3_of(divided.data());
+}
+
+std::optional<Double3> triple(const json& object, const char* name) {
+    const auto found = object.find(name);
+    if (found == object.end() || !found->is_array() || found->size() != 3)
+        return std::nullopt;
+    Double3 numbers;
+    for (std::size_t n = 0; n < 3; ++n) {
+        if (!(*found)[n].is_number())
+            return std::nullopt;
+        numbers[n] = (*found)[n].get<double>();
+    }
+    return numbers;
+}
+
+// What is wrong with a line; empty where it gave a point.
+std::string read_line(std::string_view line, std::vector<RelightPoint>& points) {
+    const json object = json::parse(line, nullptr, false);
+    if (object.is_discarded() || !object.is_object())
+        return R"(it must be a JSON object such as {"at":[0,0,2],"normal":[0,0,1]})";
+    for (const auto& member : object.items()) {
+        if (member.key() != "at" && member.key() != "normal")
+            return "\"" + member.key() + "\" is unknown: there are at and normal";
+    }
+    const auto at = triple(object, "at");
+    if (!at)
+        return "\"at\" must be three numbers";
+    const auto normal = triple(object, "normal");
+    if (!normal)
+        return "\"normal\" must be three numbers";
+    const auto direction = unit(*normal);
+    if (!direction)
+        return "\"normal\" has no length";
+    points.push_back({*at, *direction});
+    return {};
+}
+
+}  // namespace
+
+bool read_point(const std::string& at, const std::string& normal, std::vector<RelightPoint>& points) {
+    const auto place = number_list(at, 3);
+    if (!place) {
+        complain("relight: --at takes x,y,z, not \"" + at + "\"");
+        return false;
+    }
+    const auto numbers = number_list(normal, 3);
+    const auto direction = numbers ? unit({(*numbers)[0], (*numbers)[1], (*numbers)[2]}) : std::nullopt;
+    if (!direction) {
+        complain("relight: --normal takes x,y,z of some length, not \"" + normal + "\"");
+        return false;
+    }
+    points.push_back({{(*place)[0], (*place)[1], (*place)[2]}, *direction});
+    return true;
+}
+
+int read_points(const std::string& path, std::vector<RelightPoint>& points) {
+    const TextRead file = path == "-" ? read_standard_input() : read_text(path);
+    if (!file.error.empty()) {
+        complain(file.error);
+        return exit_unreadable;
+    }
+    std::string_view rest = file.text;
+    for (std::size_t number = 1; !rest.empty(); ++number) {
+        const std::size_t end = std::min(rest.find('\n'), rest.size());
+        const std::string_view line = rest.substr(0, end);
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+        if (line.find_first_not_of(" \t\r") == std::string_view::npos)
+            continue;
+        if (const std::string wrong = read_line(line, points); !wrong.empty()) {
+            const std::string where = path == "-" ? "standard input" : path;
+            complain(where + ", line " + std::to_string(number) + ": " + wrong);
+            return exit_usage;
+        }
+    }
+    return exit_valid;
+}
+
+}  // namespace drtv::tool

@@ -1,0 +1,79 @@
+#include "sector_folder.h"
+
+#include "commands.h"
+#include "files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace drtv::tool {
+namespace {
+
+using Place = std::pair<std::int32_t, std::int32_t>;  // (i, j)
+
+std::set<Place> wanted(const std::vector<Double3>& places) {
+    std::set<Place> sectors;
+    for (const Double3& place : places) {
+        const double i = std::floor(place[0] / sector_size_m);
+        const double j = std::floor(place[1] / sector_size_m);
+        const bool exists = std::abs(i) <= max_sector_coordinate && std::abs(j) <= max_sector_coordinate;
+        if (!exists)
+            continue;
+        for (int dj = -SectorFolder::reach; dj <= SectorFolder::reach; ++dj) {
+            for (int di = -SectorFolder::reach; di <= SectorFolder::reach; ++di)
+                sectors.insert({static_cast<std::int32_t>(i) + di, static_cast<std::int32_t>(j) + dj});
+        }
+    }
+    return sectors;
+}
+
+}  // namespace
+
+int SectorFolder::load(const std::string& path, const std::vector<Double3>& places) {
+    const auto files = sector_files(path);
+    if (!files)
+        return exit_unreadable;
+    const std::set<Place> sectors = wanted(places);
+    std::map<Place, std::string> named;
+    SectorSetLimits limits{0, 0, 0, 0};
+    for (const std::string& file : *files) {
+        const auto place = sector_of_file(file);
+        // A file that does not even say its sector may be one that is wanted.
+        if (place && !sectors.contains(*place))
+            continue;
+        FileRead read = read_file(file);
+        if (!read.ok()) {
+            complain(read.error);
+            return exit_unreadable;
+        }
+        std::vector<std::uint8_t> raw;
+        SectorView view;
+        ReadStatus status = unpack_sector(read.bytes, raw);
+        if (status.ok())
+            status = open_sector(raw, view);
+        if (!status.ok()) {
+            complain(file + ": " + status.message);
+            return exit_invalid;
+        }
+        const auto [entry, added] = named.try_emplace({view.i, view.j}, file);
+        if (!added) {
+            complain(entry->second + " and " + file + " hold the same sector");
+            return exit_invalid;
+        }
+        ++limits.sectors;
+        ++limits.tiles;
+        limits.probes += static_cast<std::uint32_t>(view.probe_count);
+        limits.interiors += static_cast<std::uint32_t>(view.interiors.size());
+        files_.push_back(std::move(raw));
+    }
+    memory_.resize(SectorSet::memory_bytes(limits));
+    set_ = std::make_unique<SectorSet>(memory_, limits);
+    for (const auto& file : files_)
+        set_->load(file);
+    return exit_valid;
+}
+
+}  // namespace drtv::tool

@@ -1,0 +1,32 @@
+// The sectors of a folder around some places, in memory as a game has them.
+#pragma once
+
+#include <drtv/sector_set.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace drtv::tool {
+
+class SectorFolder {
+  public:
+    // Sectors up to this many away from a place's are loaded: all that can bear on it but far interiors.
+    static constexpr int reach = 3;
+
+    // Gives the exit code: not exit_valid, and a complaint, where the folder, or a sector that is wanted,
+    // cannot be read. Sectors that are not there are none.
+    [[nodiscard]] int load(const std::string& path, const std::vector<Double3>& places);
+
+    // REQUIRES: loaded.
+    [[nodiscard]] const SectorSet& set() const { return *set_; }
+
+  private:
+    std::vector<std::vector<std::uint8_t>> files_;  // raw
+    std::vector<std::byte> memory_;
+    std::unique_ptr<SectorSet> set_;
+};
+
+}  // namespace drtv::tool
