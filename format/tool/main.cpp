@@ -1,14 +1,14 @@
 // drtv: validates, shows, compares, strips, pictures and relights sector files. Here the command line is
 // taken apart.
-#include "command_relight.h"
 #include "commands.h"
+#include "option_checks.h"
+#include "relight_options.h"
 
 #include <drtv/version.h>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <string>
@@ -21,8 +21,6 @@ void complain(const std::string& sentence) {
 }
 
 namespace {
-
-constexpr double max_metres_per_pixel = 1000;
 
 // What the command line says.
 struct CommandLine {
@@ -38,50 +36,6 @@ struct CommandLine {
     // The command. Set when the line has been parsed.
     std::function<int()> run;
 };
-
-std::string joined(const std::vector<std::string>& words) {
-    return CLI::detail::join(words, ", ");
-}
-
-CLI::Validator one_of(const std::vector<std::string>& words) {
-    const auto check = [words](const std::string& word) {
-        const bool known = std::ranges::find(words, word) != words.end();
-        return known ? std::string() : "takes one of " + joined(words) + ", not \"" + word + "\"";
-    };
-    return {check, ""};
-}
-
-CLI::Validator whole_number(std::size_t min, std::size_t max) {
-    const auto check = [=](const std::string& text) {
-        std::size_t number = 0;
-        if (CLI::detail::lexical_cast(text, number) && number >= min && number <= max)
-            return std::string();
-        return "takes a number from " + std::to_string(min) + " to " + std::to_string(max) + ", not \"" +
-               text + "\"";
-    };
-    return {check, ""};
-}
-
-// Infinity and what is no number are refused too.
-CLI::Validator metres_per_pixel() {
-    const auto check = [](const std::string& text) {
-        double number = 0;
-        if (CLI::detail::lexical_cast(text, number) && number > 0 && number < max_metres_per_pixel)
-            return std::string();
-        return "takes a number between 0 and 1000, not \"" + text + "\"";
-    };
-    return {check, ""};
-}
-
-CLI::Validator finite_number() {
-    const auto check = [](const std::string& text) {
-        double number = 0;
-        if (CLI::detail::lexical_cast(text, number) && std::isfinite(number))
-            return std::string();
-        return "takes a number, not \"" + text + "\"";
-    };
-    return {check, ""};
-}
 
 void add_checks(CLI::App& app, CommandLine& line) {
     CLI::App* validate = app.add_subcommand("validate", "Check sector files, or all of a folder");
@@ -123,7 +77,7 @@ void add_views(CLI::App& app, CommandLine& line) {
     preview->add_option("PATH", line.preview.path, "A folder, or one file")->required();
     preview->add_option("--out", line.preview.out, "The picture")->required()->type_name("FILE.png");
     preview->add_option("--metres-per-pixel", line.preview.metres_per_pixel, "By default as fits the region")
-        ->check(metres_per_pixel());
+        ->check(number_below(1000));
     preview
         ->add_option(
             "--quantity", line.preview.quantity, "What colours the probes: " + joined(preview_quantities()))
@@ -181,76 +135,9 @@ void add_diff(CLI::App& app, CommandLine& line) {
     CLI::Option* png =
         diff->add_option("--png", line.diff.png, "Draw what changed, from above")->type_name("FILE.png");
     diff->add_option("--metres-per-pixel", line.diff.metres_per_pixel, "Of the picture")
-        ->check(metres_per_pixel())
+        ->check(number_below(1000))
         ->needs(png);
     diff->callback([&line] { line.run = [&line] { return run_diff(line.diff); }; });
-}
-
-// The light of a moment: by the time of day, or by numbers.
-void add_light(CLI::App& command, LightRequest& light) {
-    CLI::Option* time =
-        command.add_option("--time", light.time, "Sun, sky and light groups at this time of a day")
-            ->type_name("HH:MM");
-    command
-        .add_option("--gradients", light.gradients, "The day (light.schema.json) instead of the built-in one")
-        ->needs(time)
-        ->type_name("FILE.json");
-    CLI::Option* direction =
-        command.add_option("--sun-direction", light.sun_direction, "Towards the sun, any length")
-            ->excludes(time)
-            ->type_name("x,y,z");
-    command.add_option("--sun", light.sun, "Irradiance from the sun on a surface that faces it")
-        ->excludes(time)
-        ->needs(direction)
-        ->type_name("r,g,b");
-    CLI::Option* sky =
-        command.add_option("--sky", light.sky, "A sky of one radiance")->excludes(time)->type_name("r,g,b");
-    command
-        .add_option("--sky-colours", light.sky_colours, "Radiance at zenith, horizon and on the sun's side")
-        ->excludes(time)
-        ->excludes(sky)
-        ->type_name("NINE,NUMBERS");
-    command
-        .add_option("--light", light.lights, "A lamp: its place, and its flux / (4 pi); any number of times")
-        ->allow_extra_args(false)
-        ->type_name("x,y,z,r,g,b");
-    command.add_option("--group", light.groups, "Factor of a light group; any number of times")
-        ->allow_extra_args(false)
-        ->type_name("NAME=r,g,b");
-    command.add_option("--mode", light.mode, "accurate, or literal: the talk's code")
-        ->check(one_of({"literal", "accurate"}))
-        ->capture_default_str();
-}
-
-void add_relight(CLI::App& app, CommandLine& line) {
-    CLI::App* relight = app.add_subcommand("relight", "The ambient light at places, as a game gets it");
-    RelightRequest& request = line.relight;
-    relight->add_option("DIR", request.folder, "A folder of sector files, or one file")->required();
-    CLI::Option* at = relight->add_option("--at", request.at, "A place, in metres")->type_name("x,y,z");
-    CLI::Option* normal =
-        relight->add_option("--normal", request.normal, "The normal there, any length")->type_name("x,y,z");
-    CLI::Option* points =
-        relight
-            ->add_option("--points",
-                         request.points,
-                         "Many: {\"at\":[x,y,z],\"normal\":[x,y,z]} per line; - is standard input")
-            ->type_name("FILE");
-    at->needs(normal)->excludes(points);
-    normal->needs(at);
-    relight->add_option("--by", request.by, "Which probes: nearest, trilinear")
-        ->check(one_of({"nearest", "trilinear"}))
-        ->capture_default_str();
-    relight->add_option("--offset", request.offset_m, "Metres along the normal at which probes are asked")
-        ->check(finite_number());
-    relight->add_flag_callback(
-        "--no-interiors", [&request] { request.interiors = false; }, "As if there were none");
-    relight->add_flag("--json", request.json, "Print JSON, one object per place");
-    add_light(*relight, request.light);
-    relight->callback([&line, at, points] {
-        if (at->count() == 0 && points->count() == 0)
-            throw CLI::RequiredError("--at with --normal, or --points,");
-        line.run = [&line] { return run_relight(line.relight); };
-    });
 }
 
 // Gives the exit status.
@@ -283,7 +170,7 @@ int run(int argc, char** argv) {
     add_views(app, line);
     add_strip(app, line);
     add_diff(app, line);
-    add_relight(app, line);
+    add_relight(app, line.relight, line.run);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
