@@ -133,7 +133,7 @@ LoadStatus SectorSet::load(std::span<const std::uint8_t> file, const LoadedSecto
         return LoadStatus::no_room;
 
     const auto index = static_cast<std::uint32_t>(slot - slots_.begin());
-    slot->sector = {view, index, first_probe, first_interior};
+    slot->sector = {view, index, first_probe, first_interior, ++loads_};
     for (std::uint32_t n = 0; n < interiors; ++n)
         interior_bounds_[first_interior + n] = bounds_of(view, view.interiors[n]);
     keep_tile(sky_tile_of(view), true);

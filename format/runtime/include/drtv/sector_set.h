@@ -63,6 +63,7 @@ struct LoadedSector {
     std::uint32_t slot = 0;  // below SectorSetLimits::sectors
     std::uint32_t first_probe = 0;
     std::uint32_t first_interior = 0;
+    std::uint64_t load = 0;  // counts loads from 1: tells a sector from what had the slot before
 };
 
 struct ProbeShare {
@@ -155,6 +156,7 @@ class SectorSet {
     std::span<TileEntry> tiles_;
     std::span<TableEntry> tile_table_;
     std::span<InteriorBounds> interior_bounds_;
+    std::uint64_t loads_ = 0;
 };
 
 // The sectors whose squares lie within `radius_m` of a camera, seen from above, nearest first, ties by (j,
