@@ -2,12 +2,17 @@
 
 #include "commands.h"
 #include "json_writer.h"
+#include "number_list.h"
 #include "relight_points.h"
 #include "sector_folder.h"
 
 #include <drtv/ambient.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -111,6 +116,64 @@ int read_places(const RelightRequest& request, std::vector<RelightPoint>& points
     return read_point(request.at, request.normal, points) ? exit_valid : exit_usage;
 }
 
+// False, and a complaint, where the option is given and is no place.
+bool read_camera(const RelightRequest& request, std::optional<Double3>& camera) {
+    if (!request.camera)
+        return true;
+    const auto numbers = number_list(*request.camera, 3);
+    if (!numbers) {
+        complain("relight: --camera takes x,y,z, not \"" + *request.camera + "\"");
+        return false;
+    }
+    camera = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+    return true;
+}
+
+VolumeSettings settings_of(const std::string& encoding) {
+    VolumeSettings settings;
+    settings.encoding = encoding == "rgba8"        ? TexelEncoding::rgba8
+                        : encoding == "rgba8-sqrt" ? TexelEncoding::rgba8_sqrt
+                                                   : TexelEncoding::rgba16f;
+    return settings;
+}
+
+// A volume over all sectors of a set, relit.
+class RelitVolume {
+  public:
+    RelitVolume(const SectorSet& set,
+                const SceneLight& light,
+                std::span<const LightShare> lamps,
+                const VolumeSettings& settings)
+        : set_(set),
+          relit_memory_(RelitProbes::memory_bytes(set.limits(), false)),
+          relit_(relit_memory_, set.limits(), false),
+          volume_memory_(Volume::memory_bytes(settings, set.limits())),
+          volume_(volume_memory_, settings, set.limits()) {
+        relit_.set_light(Shown::now, light);
+        float largest = relit_.largest_fallback();
+        for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
+            const LoadedSector* sector = set.at(slot);
+            if (sector == nullptr)
+                continue;
+            relit_.relight(Shown::now, *sector, light, lamps);
+            largest = std::max(largest, relit_.largest(*sector));
+        }
+        volume_.set_scale(suggest_scale(largest, 0));
+    }
+
+    const Volume& at(const Double3& camera) {
+        volume_.update(set_, relit_, camera);
+        return volume_;
+    }
+
+  private:
+    const SectorSet& set_;
+    std::vector<std::byte> relit_memory_;
+    RelitProbes relit_;
+    std::vector<std::byte> volume_memory_;
+    Volume volume_;
+};
+
 }  // namespace
 
 int run_relight(const RelightRequest& request) {
@@ -121,6 +184,10 @@ int run_relight(const RelightRequest& request) {
     if (const int exit_code = read_places(request, points); exit_code != exit_valid)
         return exit_code;
 
+    std::optional<Double3> camera;
+    if (!read_camera(request, camera))
+        return exit_usage;
+
     std::vector<Double3> places;
     for (const RelightPoint& point : points)
         places.push_back(point.at);
@@ -130,12 +197,16 @@ int run_relight(const RelightRequest& request) {
     if (const int exit_code = folder.load(request.folder, places); exit_code != exit_valid)
         return exit_code;
 
-    std::vector<LightShare> lights;
+    const SectorSet& set = folder.set();
+    std::vector<LightShare> lamps;
     for (const PointLight& lamp : requested.lamps) {
         std::array<LightShare, max_shares_per_light> shares;
-        const std::size_t count = split_light(folder.set(), lamp, shares);
-        lights.insert(lights.end(), shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(count));
+        const std::size_t count = split_light(set, lamp, shares);
+        lamps.insert(lamps.end(), shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(count));
     }
+    std::optional<RelitVolume> volume;
+    if (request.by == "volume")
+        volume.emplace(set, requested.light, lamps, settings_of(request.encoding));
     if (!request.json)
         print_head();
     for (const RelightPoint& point : points) {
@@ -145,7 +216,9 @@ int run_relight(const RelightRequest& request) {
         place.sampling = request.by == "nearest" ? Sampling::nearest : Sampling::trilinear;
         place.offset_m = static_cast<float>(request.offset_m);
         place.interiors = request.interiors;
-        const Ambient ambient = ambient_at(folder.set(), requested.light, lights, place);
+        const Ambient ambient =
+            volume ? ambient_in(volume->at(camera.value_or(point.at)), set, requested.light, lamps, place)
+                   : ambient_at(set, requested.light, lamps, place);
         if (request.json)
             print_json(point, ambient);
         else

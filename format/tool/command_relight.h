@@ -13,7 +13,9 @@ struct RelightRequest {
     std::string at;      // x,y,z; where there is no `points`
     std::string normal;  // x,y,z
     std::optional<std::string> points;
-    std::string by = "trilinear";  // nearest, trilinear
+    std::string by = "trilinear";       // nearest, trilinear, volume
+    std::optional<std::string> camera;  // x,y,z of the volume's window; the place itself without it
+    std::string encoding = "rgba16f";   // rgba8, rgba8-sqrt, rgba16f
     double offset_m = 0;
     bool interiors = true;
     bool json = false;

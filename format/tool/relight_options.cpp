@@ -53,8 +53,13 @@ void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& r
             ->type_name("FILE");
     at->needs(normal)->excludes(points);
     normal->needs(at);
-    relight->add_option("--by", request.by, "Which probes: nearest, trilinear")
-        ->check(one_of({"nearest", "trilinear"}))
+    relight->add_option("--by", request.by, "Which probes: nearest, trilinear, volume")
+        ->check(one_of({"nearest", "trilinear", "volume"}))
+        ->capture_default_str();
+    relight->add_option("--camera", request.camera, "Of the volume's window; by default each place itself")
+        ->type_name("x,y,z");
+    relight->add_option("--encoding", request.encoding, "Of the volume's texels: rgba8, rgba8-sqrt, rgba16f")
+        ->check(one_of({"rgba8", "rgba8-sqrt", "rgba16f"}))
         ->capture_default_str();
     relight->add_option("--offset", request.offset_m, "Metres along the normal at which probes are asked")
         ->check(finite_number());

@@ -1,5 +1,5 @@
-// Speed of the runtime on one core: 51 sectors of 70 probes as the talk has them, each figure beside a memcpy of the
-// bytes that it writes, in turns within one run. runtime_bench [ROUNDS]
+// Speed of the runtime on one core: 51 sectors of 70 probes as the talk has them, each figure beside a memcpy
+// of the bytes that it writes, in turns within one run. runtime_bench [ROUNDS]
 #include "tests/format/sectors.h"
 #include "tests/runtime/sets.h"
 
@@ -48,13 +48,8 @@ void report(const char* name, std::size_t bytes, int rounds, const std::function
         copies.push_back(microseconds([&] { std::memcpy(to.data(), from.data(), bytes); }));
     }
     const double median = at_share(times, 0.5), copy = at_share(copies, 0.5);
-    std::printf("%-52s %9.1f us  p99 %9.1f  memcpy of %8zu B %8.1f us  ratio %6.2f\n",
-                name,
-                median,
-                at_share(times, 0.99),
-                bytes,
-                copy,
-                median / copy);
+    std::printf("%-52s %9.1f us  p99 %9.1f  memcpy of %8zu B %8.1f us  ratio %6.2f\n", name, median,
+                at_share(times, 0.99), bytes, copy, median / copy);
 }
 
 SceneLight light_at(int n, RelightMode mode) {
@@ -66,20 +61,19 @@ SceneLight light_at(int n, RelightMode mode) {
     return light;
 }
 
-// A sector of 70 probes with static light and local transfer: each receives from its nearest 128 of nine sectors, by
-// index. The numbers mean nothing.
+// A sector of 70 probes with static light and local transfer: each receives from its nearest 128 of nine
+// sectors, by index. The numbers mean nothing.
 Sector town_sector(SectorId id) {
-    Sector sector = test::random_sector_1_1(static_cast<std::uint32_t>(id.i * 31 + id.j + 900), probes_per_sector);
+    Sector sector =
+        test::random_sector_1_1(static_cast<std::uint32_t>(id.i * 31 + id.j + 900), probes_per_sector);
     sector.i = id.i;
     sector.j = id.j;
     LocalTransfer local;
     for (int dj = -1; dj <= 1; ++dj) {
         for (int di = -1; di <= 1; ++di) {
             for (std::size_t p = 0; p < probes_per_sector; ++p)
-                local.sources.push_back({static_cast<std::int8_t>(di),
-                                         static_cast<std::int8_t>(dj),
-                                         static_cast<std::uint8_t>(p),
-                                         0});
+                local.sources.push_back({static_cast<std::int8_t>(di), static_cast<std::int8_t>(dj),
+                                         static_cast<std::uint8_t>(p), 0});
         }
     }
     local.receivers.resize(probes_per_sector);
@@ -114,12 +108,10 @@ int run(int rounds) {
     };
     constexpr std::size_t output = sector_count * probes_per_sector * sizeof(PackedColours);
     std::printf("%zu sectors, %zu probes each\n", count, probes_per_sector);
-    report("relight, sun, sky and static, accurate", output, rounds, [&](int n) {
-        relight_all(n, RelightMode::accurate);
-    });
-    report("relight, sun, sky and static, literal", output, rounds, [&](int n) {
-        relight_all(n, RelightMode::literal);
-    });
+    report("relight, sun, sky and static, accurate", output, rounds,
+           [&](int n) { relight_all(n, RelightMode::accurate); });
+    report("relight, sun, sky and static, literal", output, rounds,
+           [&](int n) { relight_all(n, RelightMode::literal); });
 
     std::vector<LightShare> shares;
     for (int lamp = 0; lamp < 8; ++lamp) {
@@ -140,7 +132,8 @@ int run(int rounds) {
         }
     });
 
-    for (const TexelEncoding encoding : {TexelEncoding::rgba8, TexelEncoding::rgba8_sqrt, TexelEncoding::rgba16f}) {
+    for (const TexelEncoding encoding :
+         {TexelEncoding::rgba8, TexelEncoding::rgba8_sqrt, TexelEncoding::rgba16f}) {
         VolumeSettings settings;
         settings.encoding = encoding;
         std::vector<std::byte> memory(Volume::memory_bytes(settings, limits));
@@ -205,10 +198,7 @@ int run(int rounds) {
         }));
     }
     std::printf("a sector of %zu B arrives: median %.1f us, p99 %.1f us, of which open_sector %.1f us\n",
-                files[0].size(),
-                at_share(arrivals, 0.5),
-                at_share(arrivals, 0.99),
-                at_share(opens, 0.5));
+                files[0].size(), at_share(arrivals, 0.5), at_share(arrivals, 0.99), at_share(opens, 0.5));
     std::vector<double> places;
     std::mt19937 engine(1);
     std::uniform_real_distribution<double> side(-150, 150);
@@ -220,7 +210,8 @@ int run(int rounds) {
             sum[0] += ambient.colour[0];
         }));
     }
-    std::printf("ambient_at, trilinear: median %.2f us (%g)\n", at_share(places, 0.5), static_cast<double>(sum[0]));
+    std::printf("ambient_at, trilinear: median %.2f us (%g)\n", at_share(places, 0.5),
+                static_cast<double>(sum[0]));
     return 0;
 }
 

@@ -199,9 +199,10 @@ TEST_P(Moves, DirtyBoxesAreAllThatChanged) {
             }
             for (std::int32_t z = box.offset[2]; z < box.offset[2] + box.size[2]; ++z) {
                 for (std::int32_t y = box.offset[1]; y < box.offset[1] + box.size[1]; ++y) {
-                    const auto at = (static_cast<std::size_t>(z * size[1] + y) * static_cast<std::size_t>(size[0]) +
-                                     static_cast<std::size_t>(box.offset[0])) *
-                                    volume->texel_bytes();
+                    const auto at =
+                        (static_cast<std::size_t>(z * size[1] + y) * static_cast<std::size_t>(size[0]) +
+                         static_cast<std::size_t>(box.offset[0])) *
+                        volume->texel_bytes();
                     const auto bytes = static_cast<std::size_t>(box.size[0]) * volume->texel_bytes();
                     for (std::size_t k = 0; k < 3; ++k)
                         std::memcpy(gpu[k].data() + at, volume->texels(k).data() + at, bytes);
@@ -209,7 +210,8 @@ TEST_P(Moves, DirtyBoxesAreAllThatChanged) {
             }
         }
         for (std::size_t k = 0; k < 3; ++k)
-            ASSERT_TRUE(std::ranges::equal(gpu[k], volume->texels(k))) << "step " << step << ", texture " << k;
+            ASSERT_TRUE(std::ranges::equal(gpu[k], volume->texels(k)))
+                << "step " << step << ", texture " << k;
     }
 }
 
@@ -245,13 +247,15 @@ TEST(Volume, TexelsHoldTheProbeThatTheirCentreNames) {
     for (std::int32_t z = 0; z < 8; ++z) {
         for (std::int32_t y = 0; y < 24; ++y) {
             for (std::int32_t x = 0; x < 24; ++x) {
-                const Double3 centre = {4 * (window[0] + x + 0.5), 4 * (window[1] + y + 0.5), 4 * (window[2] + z + 0.5)};
+                const Double3 centre = {4 * (window[0] + x + 0.5), 4 * (window[1] + y + 0.5),
+                                        4 * (window[2] + z + 0.5)};
                 const ProbeBlend named = set->nearest(centre);
                 const Volume::Sample sample = volume->sample(centre);
                 BasisColours expected = clamped(open_sky(light));
                 if (named.count > 0) {
                     ++probes;
-                    expected = unpacked(packed(clamped(relight(named.probes[0].sector->view, named.probes[0].probe, light))));
+                    expected = unpacked(
+                        packed(clamped(relight(named.probes[0].sector->view, named.probes[0].probe, light))));
                 } else {
                     for (Float3& colour : expected) {
                         for (float& channel : colour)
@@ -270,8 +274,8 @@ TEST(Volume, TexelsHoldTheProbeThatTheirCentreNames) {
     EXPECT_GT(probes, 1000u);
 }
 
-// The talk's shader code (slide 40) with a sampler in C++ finds what `sample` says: at the origin, 100 km away, and
-// with and without borders.
+// The talk's shader code (slide 40) with a sampler in C++ finds what `sample` says: at the origin, 100 km
+// away, and with and without borders.
 TEST(Volume, TheTalksAddressingFindsTheTexels) {
     for (const bool borders : {true, false}) {
         for (const std::int32_t away : {0, 1600}) {
@@ -280,7 +284,8 @@ TEST(Volume, TheTalksAddressingFindsTheTexels) {
             relit->set_light(Shown::now, daylight());
             for (int j = -1; j < 1; ++j) {
                 for (int i = -1; i < 1; ++i)
-                    relit->relight(Shown::now, set.add(random_sector_at({i + away, j + away})), daylight(), {});
+                    relit->relight(Shown::now, set.add(random_sector_at({i + away, j + away})), daylight(),
+                                   {});
             }
             OwnedVolume volume(
                 VolumeSettings{.size = {20, 24, 8}, .encoding = TexelEncoding::rgba16f, .borders = borders});
@@ -291,7 +296,8 @@ TEST(Volume, TheTalksAddressingFindsTheTexels) {
             std::mt19937 engine(5);
             std::uniform_real_distribution<double> offset(-36, 36), height(-12, 12);
             for (int n = 0; n < 2000; ++n) {
-                const Double3 at = {camera[0] + offset(engine), camera[1] + offset(engine), camera[2] + height(engine)};
+                const Double3 at = {camera[0] + offset(engine), camera[1] + offset(engine),
+                                    camera[2] + height(engine)};
                 const Volume::Sample expected = volume->sample(at);
                 if (expected.weight == 0)
                     continue;
@@ -316,11 +322,12 @@ TEST(Volume, TheTalksAddressingFindsTheTexels) {
                         share *= next ? above[axis] : 1 - above[axis];
                         const std::int32_t t = low[axis] + (next ? 1 : 0);
                         const std::int32_t length = size[axis];
-                        texel[axis] = static_cast<std::size_t>(
-                            borders ? std::clamp(t, 0, length - 1) : ((t % length) + length) % length);
+                        texel[axis] = static_cast<std::size_t>(borders ? std::clamp(t, 0, length - 1)
+                                                                       : ((t % length) + length) % length);
                     }
-                    const std::size_t index =
-                        (texel[2] * static_cast<std::size_t>(size[1]) + texel[1]) * static_cast<std::size_t>(size[0]) + texel[0];
+                    const std::size_t index = (texel[2] * static_cast<std::size_t>(size[1]) + texel[1]) *
+                                                  static_cast<std::size_t>(size[0]) +
+                                              texel[0];
                     PackedColours one{};
                     std::memcpy(&one[0], volume->texels(0).data() + 8 * index, 8);
                     red += share * unpacked(one)[0][0];
@@ -404,7 +411,8 @@ TEST(SuggestScale, StaysWhileTheLargestMovesByLessThanTwice) {
         EXPECT_EQ(scale, std::exp2(std::round(std::log2(scale)))) << "a power of two";
         EXPECT_LE(2 * largest, scale);
         EXPECT_GT(4.001f * largest, scale);
-        EXPECT_EQ(suggest_scale(largest * 1.99f, scale), std::max(scale, suggest_scale(largest * 1.99f, scale)));
+        EXPECT_EQ(suggest_scale(largest * 1.99f, scale),
+                  std::max(scale, suggest_scale(largest * 1.99f, scale)));
         EXPECT_EQ(suggest_scale(largest / 1.99f, scale), scale);
     }
     EXPECT_EQ(suggest_scale(0, 0), 1);

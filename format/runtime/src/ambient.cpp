@@ -60,6 +60,17 @@ class Gathering {
         add_part(parts_.fallback, colours, share);
     }
 
+    void add_blend(const ProbeBlend& blend, float sky_factor, float share) {
+        if (!(share > 0))
+            return;
+        for (std::size_t n = 0; n < blend.count; ++n) {
+            const ProbeShare& probe = blend.probes[n];
+            add_probe(*probe.sector, probe.probe, probe.share * share);
+        }
+        if (blend.fallback > 0)
+            add_fallback(sky_factor, blend.fallback * share);
+    }
+
     [[nodiscard]] const BasisColours& colours() const { return colours_; }
     [[nodiscard]] const AmbientParts& parts() const { return parts_; }
 
@@ -85,43 +96,123 @@ PlaceStatus status_of(const ProbeBlend& blend, float interior) {
     return only_fallback && interior > 0 ? PlaceStatus::fading : blend.status;
 }
 
-}  // namespace
-
-Ambient ambient_at(const SectorSet& set,
-                   const SceneLight& light,
-                   std::span<const LightShare> lights,
-                   const AmbientPlace& place) {
-    Ambient ambient;
+Double3 asked_place(const AmbientPlace& place) {
     Double3 asked = place.at;
     if (is_finite(place.normal) && std::isfinite(place.offset_m)) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             asked[axis] += double{place.offset_m} * double{place.normal[axis]};
     }
-    const ProbeBlend nearest = set.nearest(asked);
+    return asked;
+}
+
+// What is known but for the light outside; an interior's probe is gathered.
+Ambient indoors_of(const SectorSet& set,
+                   const AmbientPlace& place,
+                   const ProbeBlend& nearest,
+                   Gathering& gathering) {
+    Ambient ambient;
     if (nearest.count > 0)
         ambient.probe = nearest.probes[0];
-    const ProbeBlend blend = place.sampling == Sampling::nearest ? nearest : set.trilinear(asked);
     if (place.interiors)
         ambient.interior = set.interior(place.at, place.interior_soft_m);
+    const auto& [sector, index, share] = ambient.interior;
+    if (share > 0)
+        gathering.add_probe(*sector, sector->view.interiors[index].probe, share);
+    return ambient;
+}
 
-    Gathering gathering(light, lights, basis_weights(light.mode, place.normal));
-    const float indoors = ambient.interior.share;
-    if (indoors > 0) {
-        const LoadedSector& sector = *ambient.interior.sector;
-        gathering.add_probe(sector, sector.view.interiors[ambient.interior.index].probe, indoors);
-    }
-    if (indoors < 1) {
-        for (std::size_t n = 0; n < blend.count; ++n) {
-            const ProbeShare& probe = blend.probes[n];
-            gathering.add_probe(*probe.sector, probe.probe, probe.share * (1 - indoors));
-        }
-        if (blend.fallback > 0)
-            gathering.add_fallback(set.sky_factor(asked), blend.fallback * (1 - indoors));
-    }
-    ambient.status = status_of(blend, indoors);
-    ambient.colours = gathering.colours();
+void finish(Ambient& ambient,
+            const Gathering& gathering,
+            const BasisColours& colours,
+            RelightMode mode,
+            const AmbientPlace& place) {
+    ambient.colours = colours;
     ambient.parts = gathering.parts();
-    ambient.colour = shade_ambient(light.mode, ambient.colours, place.normal);
+    ambient.colour = shade_ambient(mode, colours, place.normal);
+}
+
+// Calls `use(centre, blend, share)` for the eight texels around a place, each of which holds the probe that
+// its centre names. Gives a blend with the status of all.
+template <class Use>
+ProbeBlend blend_of_texels(const SectorSet& set,
+                           const VolumeSettings& settings,
+                           const Double3& world_m,
+                           const Use& use) {
+    ProbeBlend all;
+    for (int n = 0; n < 8; ++n) {
+        float share = 1;
+        Double3 centre{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double width = double{settings.texel_m[axis]};
+            const double texels = world_m[axis] / width - 0.5;
+            const double low = std::floor(texels);
+            const auto above = static_cast<float>(texels - low);
+            const bool next = (n >> axis & 1) != 0;
+            share *= next ? above : 1 - above;
+            centre[axis] = (low + (next ? 1.5 : 0.5)) * width;
+        }
+        if (!(share > 0))
+            continue;
+        const ProbeBlend texel = set.nearest(centre);
+        all.count += texel.count;
+        all.fallback += share * texel.fallback;
+        if (texel.count == 0)
+            all.status = texel.status;
+        use(centre, texel, share);
+    }
+    if (all.count > 0)
+        all.status = all.fallback > 0 ? PlaceStatus::fading : PlaceStatus::inside;
+    return all;
+}
+
+}  // namespace
+
+Ambient ambient_at(const SectorSet& set,
+                   const SceneLight& light,
+                   std::span<const LightShare> lamps,
+                   const AmbientPlace& place) {
+    const Double3 asked = asked_place(place);
+    const ProbeBlend nearest = set.nearest(asked);
+    const ProbeBlend blend = place.sampling == Sampling::nearest ? nearest : set.trilinear(asked);
+    Gathering gathering(light, lamps, basis_weights(light.mode, place.normal));
+    Ambient ambient = indoors_of(set, place, nearest, gathering);
+    gathering.add_blend(blend, set.sky_factor(asked), 1 - ambient.interior.share);
+    ambient.status = status_of(blend, ambient.interior.share);
+    finish(ambient, gathering, gathering.colours(), light.mode, place);
+    return ambient;
+}
+
+Ambient ambient_in(const Volume& volume,
+                   const SectorSet& set,
+                   const SceneLight& light,
+                   std::span<const LightShare> lamps,
+                   const AmbientPlace& place) {
+    const Double3 asked = asked_place(place);
+    const Volume::Sample sample = volume.sample(asked);
+    Gathering gathering(light, lamps, basis_weights(light.mode, place.normal));
+    Ambient ambient = indoors_of(set, place, set.nearest(asked), gathering);
+    const float outdoors = 1 - ambient.interior.share;
+    BasisColours colours = gathering.colours();
+    Gathering distance(light, lamps, basis_weights(light.mode, place.normal));
+    distance.add_fallback(set.sky_factor(asked), 1);
+    add(colours, sample.colours, outdoors * sample.weight);
+    add(colours, distance.colours(), outdoors * (1 - sample.weight));
+
+    ProbeBlend blend;
+    blend.fallback = 1;
+    if (sample.weight > 0) {
+        blend = blend_of_texels(
+            set, volume.settings(), asked, [&](const Double3& centre, const ProbeBlend& texel, float share) {
+                gathering.add_blend(texel, set.sky_factor(centre), outdoors * sample.weight * share);
+            });
+    }
+    if (sample.weight < 1)
+        gathering.add_fallback(set.sky_factor(asked), outdoors * (1 - sample.weight));
+    const bool fades = sample.weight > 0 && sample.weight < 1 && blend.status == PlaceStatus::inside;
+    if (fades)
+        blend.status = PlaceStatus::fading;
+    ambient.status = status_of(blend, ambient.interior.share);
+    finish(ambient, gathering, colours, light.mode, place);
     return ambient;
 }
 

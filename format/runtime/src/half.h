@@ -1,5 +1,6 @@
-// Numbers of 16 bits (IEEE 754 binary16) from floats that are not below 0, and back. Without branches, so that a
-// compiler makes many at once; with the same bits everywhere, as long as the CPU does not flush denormals.
+// Numbers of 16 bits (IEEE 754 binary16) from floats that are not below 0, and back. Without branches, so
+// that a compiler makes many at once; with the same bits everywhere, as long as the CPU does not flush
+// denormals.
 #pragma once
 
 #include <cstdint>
@@ -18,19 +19,20 @@ namespace drtv {
     return x;
 }
 
+inline constexpr float half_largest = 65504;
+inline constexpr std::uint32_t half_least_normal = 113u << 23;  // 2^-14, as a float's bits
+inline constexpr std::uint32_t half_exponent_shift = (127u - 15u) << 23;
+inline constexpr float half_subnormal_unit = 0.5f;  // its last bit stands where a subnormal half's does
+
 // Nearest, ties to even; what is below 0 or no number gives 0, what is too large the largest number.
 [[nodiscard]] inline std::uint16_t half_of(float x) {
-    constexpr float largest = 65504;
-    constexpr std::uint32_t least_normal = 113u << 23;  // 2^-14
-    constexpr std::uint32_t exponent_shift = (127u - 15u) << 23;
-    constexpr float subnormal_unit = 0.5f;  // its last bit stands where a subnormal's does
     const float positive = x > 0 ? x : 0;
-    const float bounded = positive < largest ? positive : largest;
+    const float bounded = positive < half_largest ? positive : half_largest;
     const std::uint32_t bits = bits_of(bounded);
     const std::uint32_t odd = (bits >> 13) & 1u;
-    const std::uint32_t normal = (bits - exponent_shift + 0xFFFu + odd) >> 13;
-    const std::uint32_t subnormal = bits_of(bounded + subnormal_unit) - bits_of(subnormal_unit);
-    return static_cast<std::uint16_t>(bits < least_normal ? subnormal : normal);
+    const std::uint32_t normal = (bits - half_exponent_shift + 0xFFFu + odd) >> 13;
+    const std::uint32_t subnormal = bits_of(bounded + half_subnormal_unit) - bits_of(half_subnormal_unit);
+    return static_cast<std::uint16_t>(bits < half_least_normal ? subnormal : normal);
 }
 
 // REQUIRES: not below 0, finite.

@@ -61,14 +61,10 @@ Lanes bounce_and_sky(const std::int16_t* transfer,
     return (even + odd) + visibility * load(direct.data());
 }
 
-BasisColours by_basis(const std::array<Lanes, channel_count>& channels) {
-    std::array<Float4, channel_count> rows;
-    for (std::size_t c = 0; c < channel_count; ++c)
-        store(channels[c], rows[c].data());
-    BasisColours colours;
-    for (std::size_t b = 0; b < basis_count; ++b)
-        colours[b] = {rows[0][b], rows[1][b], rows[2][b]};
-    return colours;
+float largest_of(Lanes lanes) {
+    Float4 numbers;
+    store(lanes, numbers.data());
+    return std::max(std::max(numbers[0], numbers[1]), std::max(numbers[2], numbers[3]));
 }
 
 }  // namespace
@@ -80,7 +76,9 @@ ProbeRelighter::ProbeRelighter(const SectorView& sector, const SceneLight& light
     const auto per_code = [](const Float3& factor) {
         return Float3{factor[0] / fixed_point_max, factor[1] / fixed_point_max, factor[2] / fixed_point_max};
     };
-    static_factor_ = per_code(light.static_colour);
+    if (!sector.static_irradiance.empty() && light.static_colour != Float3{})
+        irradiance_[irradiance_count_++] = {
+            sector.static_irradiance.data(), sector.static_exponents.data(), per_code(light.static_colour)};
     for (std::size_t g = 0; g < sector.light_group_names.size(); ++g) {
         const std::string_view name = light_group_name(sector, g);
         Float3 colour = light.other_groups;
@@ -88,29 +86,144 @@ ProbeRelighter::ProbeRelighter(const SectorView& sector, const SceneLight& light
             if (group.name == name)
                 colour = group.colour;
         }
-        if (colour != Float3{})
-            groups_[group_count_++] = {g, per_code(colour)};
+        if (colour == Float3{})
+            continue;
+        const std::size_t first = g * sector.probe_count;
+        irradiance_[irradiance_count_++] = {sector.light_group_irradiance.data() + first,
+                                            sector.light_group_exponents.data() + first,
+                                            per_code(colour)};
     }
 }
 
-BasisColours ProbeRelighter::operator()(std::size_t p) const {
-    const TransferCodes& transfer = sector_->transfer[p];
-    const Lanes visibility = load_codes(sector_->sky_visibility[p].data());
-    std::array<Lanes, channel_count> channels;
-    for (std::size_t c = 0; c < channel_count; ++c)
-        channels[c] = bounce_and_sky(transfer[c][0].data(), bounce_[c], visibility, sky_direct_[c]);
-    const auto add = [&](const LightCodes& codes, std::int8_t exponent, const Float3& factor) {
-        const float scale = scale_of_exponent(exponent);
+// The arithmetic for one probe, four directions at once; and the same for two coefficients more at once,
+// which gives the same bits: each product and each sum is rounded by itself, in the same order.
+struct ProbeRelighter::Kernels {
+    static void channels_of(const ProbeRelighter& r, std::size_t p, Lanes (&channels)[channel_count]) {
+        const TransferCodes& transfer = r.sector_->transfer[p];
+        const Lanes visibility = load_codes(r.sector_->sky_visibility[p].data());
         for (std::size_t c = 0; c < channel_count; ++c)
-            channels[c] = channels[c] + load_codes(codes[c].data()) * splat(scale * factor[c]);
-    };
-    if (!sector_->static_irradiance.empty())
-        add(sector_->static_irradiance[p], sector_->static_exponents[p], static_factor_);
-    for (std::size_t n = 0; n < group_count_; ++n) {
-        const std::size_t at = groups_[n].index * sector_->probe_count + p;
-        add(sector_->light_group_irradiance[at], sector_->light_group_exponents[at], groups_[n].factor);
+            channels[c] = bounce_and_sky(transfer[c][0].data(), r.bounce_[c], visibility, r.sky_direct_[c]);
+        for (std::size_t n = 0; n < r.irradiance_count_; ++n) {
+            const auto& [codes, exponents, factor] = r.irradiance_[n];
+            const float scale = scale_of_exponent(exponents[p]);
+            for (std::size_t c = 0; c < channel_count; ++c)
+                channels[c] = channels[c] + load_codes(codes[p][c].data()) * splat(scale * factor[c]);
+        }
     }
-    return by_basis(channels);
+
+    static float pack_all(const ProbeRelighter& r, PackedColours* out) {
+        Lanes largest = splat(0);
+        for (std::size_t p = 0; p < r.sector_->probe_count; ++p) {
+            Lanes channels[channel_count];
+            channels_of(r, p, channels);
+            Lanes rows[channel_count];
+            pack_rows(channels, rows);
+            for (std::size_t k = 0; k < channel_count; ++k) {
+                largest = larger(rows[k], largest);
+                store_halves(rows[k], out[p][k].data());
+            }
+        }
+        return largest_of(largest);
+    }
+
+#if defined(DRTV_AVX2)
+    DRTV_AVX2 static float pack_all_avx2(const ProbeRelighter& r, PackedColours* out) {
+        const SectorView& sector = *r.sector_;
+        __m256 bounce01[channel_count];
+        __m256 bounce23[channel_count];
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            const Float4& b = r.bounce_[c];
+            bounce01[c] = _mm256_set_ps(b[1], b[1], b[1], b[1], b[0], b[0], b[0], b[0]);
+            bounce23[c] = _mm256_set_ps(b[3], b[3], b[3], b[3], b[2], b[2], b[2], b[2]);
+        }
+        __m128 largest = _mm_setzero_ps();
+        for (std::size_t p = 0; p < sector.probe_count; ++p) {
+            const auto* transfer = reinterpret_cast<const __m128i*>(sector.transfer[p][0][0].data());
+            const auto codes_of = [](const std::int16_t* codes) DRTV_AVX2 {
+                const __m128i four = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(codes));
+                return _mm_cvtepi32_ps(_mm_cvtepi16_epi32(four));
+            };
+            const __m128 visibility = codes_of(sector.sky_visibility[p].data());
+            __m128 channels[channel_count];
+            for (std::size_t c = 0; c < channel_count; ++c) {
+                const __m128i rows01 = _mm_loadu_si128(transfer + 2 * c);
+                const __m128i rows23 = _mm_loadu_si128(transfer + 2 * c + 1);
+                const __m128i even = _mm_unpacklo_epi16(rows01, rows23);
+                const __m128i odd = _mm_unpackhi_epi16(rows01, rows23);
+                const __m256 columns01 =
+                    _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_unpacklo_epi16(even, odd)));
+                const __m256 columns23 =
+                    _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_unpackhi_epi16(even, odd)));
+                const __m256 sums = _mm256_add_ps(_mm256_mul_ps(columns01, bounce01[c]),
+                                                  _mm256_mul_ps(columns23, bounce23[c]));
+                const __m128 bounced =
+                    _mm_add_ps(_mm256_castps256_ps128(sums), _mm256_extractf128_ps(sums, 1));
+                const __m128 direct = _mm_mul_ps(visibility, _mm_loadu_ps(r.sky_direct_[c].data()));
+                channels[c] = _mm_add_ps(bounced, direct);
+            }
+            for (std::size_t n = 0; n < r.irradiance_count_; ++n) {
+                const Irradiance& light = r.irradiance_[n];
+                const float scale = scale_of_exponent(light.exponents[p]);
+                for (std::size_t c = 0; c < channel_count; ++c) {
+                    const __m128 factor = _mm_set1_ps(scale * light.factor[c]);
+                    channels[c] =
+                        _mm_add_ps(channels[c], _mm_mul_ps(codes_of(light.codes[p][c].data()), factor));
+                }
+            }
+            const __m128 high = _mm_unpackhi_ps(channels[0], channels[1]);
+            __m128 last = _mm_shuffle_ps(high, channels[2], _MM_SHUFFLE(3, 3, 3, 2));
+            _MM_TRANSPOSE4_PS(channels[0], channels[1], channels[2], last);
+            for (std::size_t k = 0; k < channel_count; ++k) {
+                largest = _mm_max_ps(channels[k], largest);
+                const __m128 positive = _mm_max_ps(channels[k], _mm_setzero_ps());
+                const __m128 bounded = _mm_min_ps(positive, _mm_set1_ps(half_largest));
+                _mm_storel_epi64(reinterpret_cast<__m128i*>(out[p][k].data()),
+                                 _mm_cvtps_ph(bounded, _MM_FROUND_TO_NEAREST_INT));
+            }
+        }
+        return largest_of({largest});
+    }
+#endif
+};
+
+BasisColours ProbeRelighter::operator()(std::size_t p) const {
+    Lanes channels[channel_count];
+    Kernels::channels_of(*this, p, channels);
+    std::array<Float4, channel_count> rows;
+    for (std::size_t c = 0; c < channel_count; ++c)
+        store(channels[c], rows[c].data());
+    BasisColours colours;
+    for (std::size_t b = 0; b < basis_count; ++b)
+        colours[b] = {rows[0][b], rows[1][b], rows[2][b]};
+    return colours;
+}
+
+float ProbeRelighter::pack_all(std::span<PackedColours> out) const {
+#if defined(DRTV_AVX2)
+    if (has_avx2())
+        return Kernels::pack_all_avx2(*this, out.data());
+#endif
+    return Kernels::pack_all(*this, out.data());
+}
+
+PackedColours packed(const BasisColours& colours) {
+    PackedColours result;
+    for (std::size_t k = 0; k < channel_count; ++k) {
+        for (std::size_t c = 0; c < channel_count; ++c)
+            result[k][c] = half_of(colours[k][c]);
+        result[k][3] = half_of(colours[3][k]);
+    }
+    return result;
+}
+
+BasisColours unpacked(const PackedColours& colours) {
+    BasisColours result;
+    for (std::size_t k = 0; k < channel_count; ++k) {
+        for (std::size_t c = 0; c < channel_count; ++c)
+            result[k][c] = float_of_half(colours[k][c]);
+        result[3][k] = float_of_half(colours[k][3]);
+    }
+    return result;
 }
 
 BasisColours relight(const SectorView& sector, std::size_t p, const SceneLight& light) {

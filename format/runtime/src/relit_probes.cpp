@@ -1,7 +1,6 @@
 #include <drtv/relit_probes.h>
 
 #include "arena.h"
-#include "half.h"
 
 #include <algorithm>
 
@@ -30,26 +29,6 @@ float largest_of(const BasisColours& colours) {
 
 }  // namespace
 
-PackedColours packed(const BasisColours& colours) {
-    PackedColours result;
-    for (std::size_t k = 0; k < channel_count; ++k) {
-        for (std::size_t c = 0; c < channel_count; ++c)
-            result[k][c] = half_of(colours[k][c]);
-        result[k][3] = half_of(colours[3][k]);
-    }
-    return result;
-}
-
-BasisColours unpacked(const PackedColours& colours) {
-    BasisColours result;
-    for (std::size_t k = 0; k < channel_count; ++k) {
-        for (std::size_t c = 0; c < channel_count; ++c)
-            result[k][c] = float_of_half(colours[k][c]);
-        result[3][k] = float_of_half(colours[k][3]);
-    }
-    return result;
-}
-
 std::size_t RelitProbes::memory_bytes(const SectorSetLimits& limits, bool with_fade) {
     const std::size_t lights = with_fade ? 2 : 1;
     return lights * Arena::bytes_of<PackedColours>(limits.probes) + Arena::bytes_of<Slot>(limits.sectors);
@@ -76,14 +55,19 @@ void RelitProbes::relight(Shown shown,
     const std::size_t index = index_of(shown);
     const ProbeRelighter relighter(sector.view, light);
     const LocalRelighter local(sector, lamps);
+    const std::span<PackedColours> out =
+        lights_[index].colours.subspan(sector.first_probe, sector.view.probe_count);
     float largest = 0;
-    for (std::size_t p = 0; p < sector.view.probe_count; ++p) {
-        BasisColours colours = relighter(p);
-        if (!local.empty())
+    if (local.empty()) {
+        largest = relighter.pack_all(out);
+    } else {
+        for (std::size_t p = 0; p < out.size(); ++p) {
+            BasisColours colours = relighter(p);
             local.add_to(colours, p);
-        colours = clamped(colours);
-        largest = std::max(largest, largest_of(colours));
-        lights_[index].colours[sector.first_probe + p] = packed(colours);
+            colours = clamped(colours);
+            largest = std::max(largest, largest_of(colours));
+            out[p] = packed(colours);
+        }
     }
     slots_[sector.slot][index] = {sector.load, ++clock_, largest};
 }

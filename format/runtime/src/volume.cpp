@@ -13,7 +13,8 @@ namespace {
 
 // Sectors that texels along one axis may lie over, wherever the window starts.
 std::int32_t sectors_under(const VolumeSettings& settings, std::size_t axis) {
-    const double length_m = static_cast<double>(settings.size[axis]) * static_cast<double>(settings.texel_m[axis]);
+    const double length_m =
+        static_cast<double>(settings.size[axis]) * static_cast<double>(settings.texel_m[axis]);
     return static_cast<std::int32_t>(std::ceil(length_m / side_m)) + 1;
 }
 
@@ -23,7 +24,8 @@ std::int32_t modulo(std::int32_t n, std::int32_t length) {
 }
 
 std::size_t product(const Int3& size) {
-    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
+    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
+           static_cast<std::size_t>(size[2]);
 }
 
 Int3 texture_size_of(const VolumeSettings& settings) {
@@ -35,10 +37,11 @@ struct Counts {
     std::size_t texel_bytes;
     std::size_t encoded_bytes;
     std::size_t slots;
-    std::array<std::size_t, 2> places;
+    std::array<std::size_t, 3> places;
     std::size_t under;
     std::size_t cells_z;
     std::size_t slices;
+    std::size_t runs;
 };
 
 Counts counts_of(const VolumeSettings& settings, const SectorSetLimits& limits) {
@@ -53,14 +56,15 @@ Counts counts_of(const VolumeSettings& settings, const SectorSetLimits& limits) 
     return {channel_count * texel * product(texture_size_of(settings)),
             channel_count * texel * limits.probes,
             limits.sectors,
-            {nx, ny},
+            {nx, ny, static_cast<std::size_t>(settings.size[2])},
             under,
             under * static_cast<std::size_t>(settings.size[2]),
-            settings.blur ? slices * floats : 0};
+            settings.blur ? slices * floats : 0,
+            static_cast<std::size_t>(sectors_under(settings, 0)) + 2};
 }
 
-// The window's lowest texel for a camera (each axis by itself): the middle lies nearest to it. False where it is
-// out of the world.
+// The window's lowest texel for a camera (each axis by itself): the middle lies nearest to it. False where it
+// is out of the world.
 bool window_at(const VolumeSettings& settings, const Double3& camera_m, Int3& window) {
     Int3 found;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -94,8 +98,8 @@ struct Work {
     }
 };
 
-// A slab for each axis along which the window moved; what an earlier one has is left out. A blur reaches a texel
-// further, and sees where the window ends.
+// A slab for each axis along which the window moved; what an earlier one has is left out. A blur reaches a
+// texel further, and sees where the window ends.
 void add_moves(const Volume::State& state, const Int3& moved, Work& work) {
     const Int3& size = state.settings.size;
     TexelBox rest = state.whole();
@@ -138,8 +142,8 @@ void add_changes(Volume::State& state, const RelitProbes& relit, Work& work) {
         const auto& places = state.places[axis];
         const auto low = std::find_if(
             places.begin(), places.end(), [&](const Volume::State::Place& p) { return p.sector == sector; });
-        const auto high =
-            std::find_if(low, places.end(), [&](const Volume::State::Place& p) { return p.sector != sector; });
+        const auto high = std::find_if(
+            low, places.end(), [&](const Volume::State::Place& p) { return p.sector != sector; });
         return std::pair(static_cast<std::int32_t>(low - places.begin()),
                          static_cast<std::int32_t>(high - places.begin()));
     };
@@ -148,9 +152,7 @@ void add_changes(Volume::State& state, const RelitProbes& relit, Work& work) {
         const auto [y0, y1] = range_of(1, under.id.j);
         if (x0 == x1 || y0 == y1)
             continue;  // room for more sectors than lie there
-        const std::int32_t at_x = modulo(under.id.i, state.under_size[0]);
-        const std::int32_t at_y = modulo(under.id.j, state.under_size[1]);
-        Volume::State::Shown& shown = state.shown[static_cast<std::size_t>(at_y * state.under_size[0] + at_x)];
+        Volume::State::Shown& shown = state.shown[state.lasting_index(under.id)];
         const Volume::State::Shown now = shown_of(under, relit);
         if (shown == now)
             continue;
@@ -212,9 +214,8 @@ void mark_dirty(Volume::State& state, const TexelBox& box) {
         return;
     }
     for (std::size_t n = 0; n < more; ++n) {
-        const std::array<std::size_t, 3> part = {n % axes[0].count,
-                                                 n / axes[0].count % axes[1].count,
-                                                 n / axes[0].count / axes[1].count};
+        const std::array<std::size_t, 3> part = {
+            n % axes[0].count, n / axes[0].count % axes[1].count, n / axes[0].count / axes[1].count};
         TextureBox& dirty = state.dirty[state.dirty_count++];
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto [low, high] = axes[axis].parts[part[axis]];
@@ -280,27 +281,40 @@ std::size_t Volume::State::under_index(std::int32_t x, std::int32_t y) const {
     return static_cast<std::size_t>(j * under_size[0] + i);
 }
 
+std::size_t Volume::State::lasting_index(SectorId id) const {
+    const std::int32_t i = modulo(id.i, under_size[0]);
+    const std::int32_t j = modulo(id.j, under_size[1]);
+    return static_cast<std::size_t>(j * under_size[0] + i);
+}
+
 std::size_t Volume::State::memory_bytes(const VolumeSettings& settings, const SectorSetLimits& limits) {
     const Counts counts = counts_of(settings, limits);
     return Arena::bytes_of<std::byte>(counts.texel_bytes) + Arena::bytes_of<std::byte>(counts.encoded_bytes) +
            Arena::bytes_of<Encoded>(counts.slots) + Arena::bytes_of<Place>(counts.places[0]) +
-           Arena::bytes_of<Place>(counts.places[1]) + Arena::bytes_of<Under>(counts.under) +
+           Arena::bytes_of<Place>(counts.places[1]) + Arena::bytes_of<Place>(counts.places[2]) +
+           Arena::bytes_of<CellsOf>(counts.under) + Arena::bytes_of<Under>(counts.under) +
            Arena::bytes_of<std::uint8_t>(counts.cells_z) + Arena::bytes_of<Shown>(counts.under) +
-           Arena::bytes_of<float>(counts.slices);
+           Arena::bytes_of<float>(counts.slices) + Arena::bytes_of<Run>(counts.runs);
 }
 
-Volume::State::State(const VolumeSettings& settings_, const SectorSetLimits& limits, std::span<std::byte> memory)
+Volume::State::State(const VolumeSettings& settings_,
+                     const SectorSetLimits& limits,
+                     std::span<std::byte> memory)
     : settings(settings_), under_size{sectors_under(settings_, 0), sectors_under(settings_, 1), 1} {
     const Counts counts = counts_of(settings, limits);
     Arena arena(memory);
     texels = arena.take<std::byte>(counts.texel_bytes);
     encoded = arena.take<std::byte>(counts.encoded_bytes);
     encoded_of = arena.take<Encoded>(counts.slots);
-    places = {arena.take<Place>(counts.places[0]), arena.take<Place>(counts.places[1])};
+    places = {arena.take<Place>(counts.places[0]),
+              arena.take<Place>(counts.places[1]),
+              arena.take<Place>(counts.places[2])};
     under = arena.take<Under>(counts.under);
     cells_z = arena.take<std::uint8_t>(counts.cells_z);
+    cells_of = arena.take<CellsOf>(counts.under);
     shown = arena.take<Shown>(counts.under);
     slices = arena.take<float>(counts.slices);
+    runs = arena.take<Run>(counts.runs);
 }
 
 float suggest_scale(float largest, float current) {
@@ -323,7 +337,8 @@ bool Volume::is_possible(const VolumeSettings& settings) {
     constexpr float max_texel_m = 64;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const bool size_fits = settings.size[axis] >= 2 && settings.size[axis] <= max_size;
-        const bool width_fits = settings.texel_m[axis] >= min_texel_m && settings.texel_m[axis] <= max_texel_m;
+        const bool width_fits =
+            settings.texel_m[axis] >= min_texel_m && settings.texel_m[axis] <= max_texel_m;
         if (!size_fits || !width_fits)
             return false;
     }
@@ -385,7 +400,8 @@ VolumeShaderInputs Volume::shader_inputs() const {
         const std::int32_t size = settings.size[axis];
         const auto length = static_cast<float>(size);
         const std::int32_t middle = state_->window[axis] + size / 2;
-        inputs.snapped_camera[axis] = static_cast<double>(middle) * static_cast<double>(settings.texel_m[axis]);
+        inputs.snapped_camera[axis] =
+            static_cast<double>(middle) * static_cast<double>(settings.texel_m[axis]);
         inputs.uv_scale[axis] = 1 / (length * settings.texel_m[axis]);
         // frac(middle / N - 1/2), of whole numbers: twice N is the common denominator.
         inputs.wrap_offset[axis] = static_cast<float>(modulo(2 * middle - size, 2 * size)) / (2 * length);

@@ -21,10 +21,20 @@ struct TexelBox {
 };
 
 struct Volume::State {
-    // Where the centres of texels lie along x or y.
+    // Of the window's n-th texel along an axis: where its centre lies, and where it stands in a texture.
     struct Place {
-        std::int32_t sector;  // i or j
-        std::int32_t cell;    // 0 to 15
+        std::int32_t sector;  // i or j; of x and y alone
+        std::int32_t cell;    // 0 to 15; likewise
+        std::int32_t to;      // index in a texture
+        std::int32_t copy;    // its copy at a border; -1: none
+    };
+    // A part of the window along x that lies over one sector and is not cut by the wrap.
+    struct Run {
+        std::int32_t x;   // of the window
+        std::int32_t to;  // of the texture
+        std::int32_t length;
+        std::size_t under;  // sector along x, from the first
+        bool whole_cells;   // texel after texel is cell after cell
     };
     // What a sector's place showed when it was written.
     struct Shown {
@@ -40,6 +50,12 @@ struct Volume::State {
         SectorId id;
         const LoadedSector* sector = nullptr;  // null: the fallback
         const SkyTile* tile = nullptr;
+        const std::uint8_t* cells_z = nullptr;  // [z], of its grid
+    };
+    // Of which load, and which heights, a row of `cells_z` is.
+    struct CellsOf {
+        std::uint64_t load = 0;
+        std::int32_t window_z = 0;
     };
     // Of which load and change a sector's encoded texels are.
     struct Encoded {
@@ -50,19 +66,22 @@ struct Volume::State {
 
     State(const VolumeSettings& settings_, const SectorSetLimits& limits, std::span<std::byte> memory);
     // Without the state itself.
-    [[nodiscard]] static std::size_t memory_bytes(const VolumeSettings& settings, const SectorSetLimits& limits);
+    [[nodiscard]] static std::size_t memory_bytes(const VolumeSettings& settings,
+                                                  const SectorSetLimits& limits);
 
     VolumeSettings settings;
     std::span<std::byte> texels;
-    std::span<std::byte> encoded;          // three texels per probe of the set
-    std::span<Encoded> encoded_of;         // by slot
-    std::array<std::span<Place>, 2> places;  // of the window's columns along x and y
-    std::span<Under> under;                // [j][i] from the south-western sector on
-    std::span<std::uint8_t> cells_z;       // [sector under the window][z]
-    Int3 under_size{};                     // sectors along x and y that there is room for
+    std::span<std::byte> encoded;            // three texels per probe of the set
+    std::span<Encoded> encoded_of;           // by slot
+    std::array<std::span<Place>, 3> places;  // of the window's texels along each axis
+    std::span<Under> under;                  // [j][i] from the south-western sector on
+    std::span<std::uint8_t> cells_z;         // [i mod under_size[0], j mod under_size[1]][z]
+    std::span<CellsOf> cells_of;             // likewise
+    Int3 under_size{};                       // sectors along x and y that there is room for
     SectorId under_first;
-    std::span<Shown> shown;  // by i mod under_size[0], j mod under_size[1]
+    std::span<Shown> shown;   // by i mod under_size[0], j mod under_size[1]
     std::span<float> slices;  // of the blur
+    std::span<Run> runs;      // of the box that is written
     BasisColours fallback{};
     Int3 window{};
     bool filled = false;
@@ -81,6 +100,11 @@ struct Volume::State {
     [[nodiscard]] double centre_m(std::size_t axis, std::int32_t n) const;
     // REQUIRES: the places are those of the window.
     [[nodiscard]] std::size_t under_index(std::int32_t x, std::int32_t y) const;
+    // Of a sector in what stays from update to update.
+    [[nodiscard]] std::size_t lasting_index(SectorId id) const;
+    [[nodiscard]] const Place& place(std::size_t axis, std::int32_t n) const {
+        return places[axis][static_cast<std::size_t>(n)];
+    }
 };
 
 // Which sectors lie under the window, and where in them its columns do.
@@ -94,7 +118,8 @@ void write_box(Volume::State& state, const RelitProbes& relit, const TexelBox& b
 
 // A texel as the textures hold it: [k][r, g, b, a].
 using TexelColours = std::array<Float4, channel_count>;
-// What texture k's texels hold at the window's place (x, y, z), decoded; of rgba8_sqrt, the root of it over the scale.
+// What texture k's texels hold at the window's place (x, y, z), decoded; of rgba8_sqrt, the root of it over
+// the scale.
 [[nodiscard]] Float4 stored_texel(const Volume::State& state, std::size_t k, const Int3& place);
 
 }  // namespace drtv

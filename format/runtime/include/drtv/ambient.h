@@ -1,5 +1,5 @@
 // The ambient light at a place and a normal, worked out on the CPU from the files themselves: for what a game
-// lights there (particles, characters' queries), and what every shader is checked against.
+// lights there (particles, characters), and what every shader is checked against.
 //
 // Pure, thread-safe, no allocation. Cost: 0.1 us by the nearest probe to 1 us between eight, more in
 // interiors.
@@ -11,6 +11,7 @@
 #include <drtv/local_lights.h>
 #include <drtv/relight.h>
 #include <drtv/sector_set.h>
+#include <drtv/volume.h>
 
 #include <cstdint>
 #include <span>
@@ -47,10 +48,20 @@ struct Ambient {
     Float3 colour{};         // E/pi at the normal, nothing below 0
 };
 
-// What is not finite gives the fallback. `lights`: what split_light made of all lamps.
+// What is not finite gives the fallback. `lamps`: what split_light made of all of them.
 [[nodiscard]] Ambient ambient_at(const SectorSet& set,
                                  const SceneLight& light,
-                                 std::span<const LightShare> lights,
+                                 std::span<const LightShare> lamps,
+                                 const AmbientPlace& place);
+
+// The same as a shader finds it in a volume that was filled with this light: `place.sampling` does not count.
+// Outside the window, and fading over its last texel, there is an open sky times sky_factor (slide 57);
+// status and parts say so. Parts are not encoded, so that they add up to the colour but for what the texels
+// round.
+[[nodiscard]] Ambient ambient_in(const Volume& volume,
+                                 const SectorSet& set,
+                                 const SceneLight& light,
+                                 std::span<const LightShare> lamps,
                                  const AmbientPlace& place);
 
 }  // namespace drtv

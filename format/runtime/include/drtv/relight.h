@@ -16,11 +16,19 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace drtv {
 
 // What a relit probe is: one colour for each direction of the transfer basis, [b][r, g, b].
 using BasisColours = std::array<Float3, basis_count>;
+
+// The same in numbers of binary16, packed as the talk's textures are (slide 40): [k] holds r, g, b of basis
+// direction k and, last, channel k of the downward one. Nothing below 0; 65504 at most.
+using PackedColours = std::array<std::array<std::uint16_t, 4>, channel_count>;
+
+[[nodiscard]] PackedColours packed(const BasisColours& colours);
+[[nodiscard]] BasisColours unpacked(const PackedColours& colours);
 
 // A `SceneLight` made ready for many probes of one sector.
 class ProbeRelighter {
@@ -32,19 +40,24 @@ class ProbeRelighter {
     // where two bands cannot follow the light, a colour may be below 0. REQUIRES: p < sector.probe_count.
     [[nodiscard]] BasisColours operator()(std::size_t p) const;
 
+    // All probes at once, packed. Gives the largest number, before packing. REQUIRES: out has room for
+    // sector.probe_count.
+    float pack_all(std::span<PackedColours> out) const;
+
   private:
-    // Factor of the codes of one section: 1/32767 is in it, a probe's exponent is not.
-    struct Group {
-        std::size_t index;
+    // Codes of irradiance, one per probe. 1/32767 is in the factor, a probe's exponent is not.
+    struct Irradiance {
+        const LightCodes* codes;
+        const std::int8_t* exponents;
         Float3 factor;
     };
+    struct Kernels;
 
     const SectorView* sector_;
     DistantLight bounce_{};                           // [c][i], of transfer codes
     std::array<Float4, channel_count> sky_direct_{};  // [c][b], of visibility codes
-    Float3 static_factor_{};
-    std::array<Group, max_light_groups> groups_{};
-    std::size_t group_count_ = 0;
+    std::array<Irradiance, 1 + max_light_groups> irradiance_{};
+    std::size_t irradiance_count_ = 0;
 };
 
 // One probe. REQUIRES: p < sector.probe_count.

@@ -1,17 +1,17 @@
-// The colours of all probes of a set under one light, or on the way from one light to the next: what volumes are
-// filled from. 24 bytes per probe, twice that where a fade is asked for.
+// The colours of all probes of a set under one light, or on the way from one light to the next: what volumes
+// are filled from. 24 bytes per probe, twice that where a fade is asked for.
 //
-// Memory: the caller's, one piece. Threads: sectors may be relit on any number of threads at once, each by one; a
-// volume is filled from them when that is done. `set_light`, `set_fade` and `finish_fade` run alone.
+// Memory: the caller's, one piece. Threads: sectors may be relit on any number of threads at once, each by
+// one; a volume is filled from them when that is done. `set_light`, `set_fade` and `finish_fade` run alone.
 //
 // Without fades:
 //
 //     relit.set_light(Shown::now, light);
 //     for (const LoadedSector* sector : loaded) relit.relight(Shown::now, *sector, light, lamps);
 //
-// Over frames: set_light(Shown::next, ...) and relight all sectors as Shown::next, some per frame; then set_fade
-// from 0 to 1 over some frames; then finish_fade. What is shown is (1 - s) now + s next, with one s for all. A sector
-// that arrives meanwhile is relit for both.
+// Over frames: set_light(Shown::next, ...) and relight all sectors as Shown::next, some per frame; then
+// set_fade from 0 to 1 over some frames; then finish_fade. What is shown is (1 - s) now + s next, with one s
+// for all. A sector that arrives meanwhile is relit for both.
 #pragma once
 
 #include <drtv/local_lights.h>
@@ -25,13 +25,6 @@
 #include <span>
 
 namespace drtv {
-
-// Numbers of binary16, packed as the talk's textures are (slide 40): [k] holds r, g, b of basis direction k and, last,
-// channel k of the downward one. Nothing below 0.
-using PackedColours = std::array<std::array<std::uint16_t, 4>, channel_count>;
-
-[[nodiscard]] PackedColours packed(const BasisColours& colours);
-[[nodiscard]] BasisColours unpacked(const PackedColours& colours);
 
 enum class Shown : std::uint8_t { now, next };
 
@@ -47,7 +40,10 @@ class RelitProbes {
     // The light of places without a probe. REQUIRES, here and below: `next` only with fades.
     void set_light(Shown shown, const SceneLight& light);
     // All probes of one sector. Cost: some 10 ns per probe, and per pair of lamp and probe as much.
-    void relight(Shown shown, const LoadedSector& sector, const SceneLight& light, std::span<const LightShare> lamps);
+    void relight(Shown shown,
+                 const LoadedSector& sector,
+                 const SceneLight& light,
+                 std::span<const LightShare> lamps);
 
     // From 0 (now) to 1 (next); above 0 only once all sectors are relit for both.
     void set_fade(float share);

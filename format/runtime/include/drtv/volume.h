@@ -1,15 +1,15 @@
 // The volumes that a GPU samples: the colours of the probes around a camera, in three textures that follow it
-// (slides 33 to 36 and 60 of the talk, see drtv/light.h). Texture k holds r, g, b of basis direction k and, in alpha,
-// channel k of the downward one (slide 40).
+// (slides 33 to 36 and 60 of the talk, see drtv/light.h). Texture k holds r, g, b of basis direction k and,
+// in alpha, channel k of the downward one (slide 40).
 //
-// Texel m of the world covers [m w, (m + 1) w) along an axis of texel width w; what its centre names lights it. It
-// stands at m mod N in a texture of N texels: while the camera moves, only the planes that come in are written.
-// A shader asks at `frac((place - SnappedCamera) UVScale + 1/2 + VolumeWrapOffset)`; `shader_inputs` gives these.
-// After any moves the textures are byte for byte what a full update writes.
+// Texel m of the world covers [m w, (m + 1) w) along an axis of texel width w; what its centre names lights
+// it. It stands at m mod N in a texture of N texels: while the camera moves, only the planes that come in are
+// written. A shader asks at `frac((place - SnappedCamera) UVScale + 1/2 + VolumeWrapOffset)`; `shader_inputs`
+// gives these. After any moves the textures are byte for byte what a full update writes.
 //
-// Memory: the caller's, one piece, the texels too. Threads: `update` writes texels and runs alone on its volume; it
-// reads the set and the probes, so these must not change meanwhile. `texels` and `dirty` are for the upload after it.
-// Several volumes may be updated at once, over one set.
+// Memory: the caller's, one piece, the texels too. Threads: `update` writes texels and runs alone on its
+// volume; it reads the set and the probes, so these must not change meanwhile. `texels` and `dirty` are for
+// the upload after it. Several volumes may be updated at once, over one set.
 //
 //     drtv::Volume volume(memory, {}, limits);
 //     volume.update(set, relit, camera);            // each frame
@@ -36,8 +36,8 @@ struct VolumeSettings {
     std::array<std::int32_t, 3> size = {96, 96, 16};  // texels along x, y, z; each 2 to 1024
     std::array<float, 3> texel_m = {4, 4, 4};         // width of a texel; 0.25 to 64 m
     TexelEncoding encoding = TexelEncoding::rgba8;
-    // A texel more on each side, a copy of that on the other side, for samplers that clamp: textures then are N + 2
-    // wide, and the shader asks at (frac(...) N + 1) / (N + 2). Without them the sampler must repeat.
+    // A texel more on each side, a copy of that on the other side, for samplers that clamp: textures then are
+    // N + 2 wide, and the shader asks at (frac(...) N + 1) / (N + 2). Without them the sampler must repeat.
     bool borders = true;
     // One texture, the three over one another along z, for one sampler. REQUIRES: borders.
     bool atlas = false;
@@ -51,26 +51,27 @@ struct TextureBox {
     std::array<std::int32_t, 3> size{};
 };
 
-// What a shader takes, as in the talk's code (slide 40). Places are relative to a camera that was snapped to texels,
-// so that floats are exact far from the origin too.
+// What a shader takes, as in the talk's code (slide 40). Places are relative to a camera that was snapped to
+// texels, so that floats are exact far from the origin too.
 struct VolumeShaderInputs {
     Double3 snapped_camera{};  // subtract it on the CPU, in double
     Float3 uv_scale{};         // 1 / (N texel_m)
     Float3 wrap_offset{};      // 0 to 1
     Float3 uvw_multiply{};     // after frac: uvw * uvw_multiply + uvw_add; 1 and 0 without borders
     Float3 uvw_add{};
-    float scale = 1;           // of RGBA8: value of code 255
+    float scale = 1;  // of RGBA8: value of code 255
 };
 
-// The largest colour's next power of two with a bit to spare, for RGBA8: `current` stays while it is at most 1/2 and
-// above 1/8 of it, so that it does not change while the largest colour moves by less than twice. Above 0; 1 where
-// there is nothing to go by.
+// The largest colour's next power of two with a bit to spare, for RGBA8: `current` stays while it is at most
+// 1/2 and above 1/8 of it, so that it does not change while the largest colour moves by less than twice.
+// Above 0; 1 where there is nothing to go by.
 [[nodiscard]] float suggest_scale(float largest, float current);
 
 class Volume {
   public:
     // `limits`: of the sets that will be shown.
-    [[nodiscard]] static std::size_t memory_bytes(const VolumeSettings& settings, const SectorSetLimits& limits);
+    [[nodiscard]] static std::size_t memory_bytes(const VolumeSettings& settings,
+                                                  const SectorSetLimits& limits);
     // False where a setting lies outside its range: then there must be no such volume.
     [[nodiscard]] static bool is_possible(const VolumeSettings& settings);
 
@@ -83,9 +84,9 @@ class Volume {
     void set_scale(float scale);
     [[nodiscard]] float scale() const;
 
-    // Moves the window to the camera and writes what is not there or has changed: planes that came in, sectors that
-    // were loaded, dropped or relit, tiles. A camera that is not finite or outside the world leaves the window where
-    // it is. Places that no relit probe is known for get the fallback.
+    // Moves the window to the camera and writes what is not there or has changed: planes that came in,
+    // sectors that were loaded, dropped or relit, tiles. A camera that is not finite or outside the world
+    // leaves the window where it is. Places that no relit probe is known for get the fallback.
     void update(const SectorSet& set, const RelitProbes& relit, const Double3& camera_m);
     // The same, and every texel is written.
     void update_all(const SectorSet& set, const RelitProbes& relit, const Double3& camera_m);
@@ -105,8 +106,8 @@ class Volume {
     [[nodiscard]] bool is_filled() const;
     [[nodiscard]] const VolumeSettings& settings() const;
 
-    // What a shader finds at a place: linear filtering between texels, and how much of it counts. On the CPU, for
-    // tests and tools.
+    // What a shader finds at a place: linear filtering between texels, and how much of it counts. On the CPU,
+    // for tests and tools.
     struct Sample {
         BasisColours colours{};  // decoded
         // 1 inside, 0 from half a texel within the window's sides on: there the distance lights (slide 57).
