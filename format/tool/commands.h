@@ -59,6 +59,12 @@ struct DiffRequest {
 };
 int run_diff(const DiffRequest& request);
 
+struct TilesRequest {
+    std::string path;
+    std::string out;
+};
+int run_tiles(const TilesRequest& request);
+
 int run_issues();
 
 // One sentence to stderr, "drtv: " before it.

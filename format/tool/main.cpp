@@ -27,6 +27,7 @@ struct CommandLine {
     ValidateRequest validate;
     PreviewRequest preview{{}, {}, 0, "relit"};
     StripRequest strip;
+    TilesRequest tiles;
     DiffRequest diff;
     RelightRequest relight;
     std::string file;  // of info and dump
@@ -127,6 +128,14 @@ void add_strip(CLI::App& app, CommandLine& line) {
     strip->callback([&line] { line.run = [&line] { return run_strip(line.strip); }; });
 }
 
+void add_tiles(CLI::App& app, CommandLine& line) {
+    CLI::App* tiles =
+        app.add_subcommand("tiles", "How much sky the ground sees, by column, for the distance");
+    tiles->add_option("PATH", line.tiles.path, "A folder, or one file")->required();
+    tiles->add_option("--out", line.tiles.out, "The file of tiles to write")->required();
+    tiles->callback([&line] { line.run = [&line] { return run_tiles(line.tiles); }; });
+}
+
 void add_diff(CLI::App& app, CommandLine& line) {
     CLI::App* diff = app.add_subcommand("diff", "What changed between two files or folders");
     diff->add_option("A", line.diff.first, "A file or folder")->required();
@@ -169,6 +178,7 @@ int run(int argc, char** argv) {
     add_checks(app, line);
     add_views(app, line);
     add_strip(app, line);
+    add_tiles(app, line);
     add_diff(app, line);
     add_relight(app, line.relight, line.run);
     try {

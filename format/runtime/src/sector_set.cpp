@@ -136,7 +136,7 @@ LoadStatus SectorSet::load(std::span<const std::uint8_t> file, const LoadedSecto
     slot->sector = {view, index, first_probe, first_interior, ++loads_};
     for (std::uint32_t n = 0; n < interiors; ++n)
         interior_bounds_[first_interior + n] = bounds_of(view, view.interiors[n]);
-    keep_tile(sky_tile_of(view), true);
+    keep_tile(sky_tile_of(view));
     slot->state.store(SlotState::loaded, std::memory_order_release);
     entry.store(index + 1, std::memory_order_release);
     if (loaded != nullptr)
@@ -179,30 +179,24 @@ SectorSet::TableEntry& SectorSet::tile_entry(SectorId id) const {
     });
 }
 
-bool SectorSet::keep_tile(const SkyTile& tile, bool replace) {
+// Beside readers: the place of one that is replaced is free after `retire`.
+void SectorSet::keep_tile(const SkyTile& tile) {
     if (tiles_.empty())
-        return false;
+        return;
     TableEntry& entry = tile_entry({tile.i, tile.j});
     const std::uint32_t value = entry.load(std::memory_order_relaxed);
-    if (value != 0 && (!replace || tiles_[value - 1].tile == tile))
-        return true;
+    if (value != 0 && tiles_[value - 1].tile == tile)
+        return;
     const auto free = std::find_if(tiles_.begin(), tiles_.end(), [](const TileEntry& t) { return !t.used; });
     if (free == tiles_.end())
-        return false;
+        return;
     *free = {tile, true};
     entry.store(static_cast<std::uint32_t>(free - tiles_.begin()) + 1, std::memory_order_release);
-    return true;
-}
-
-bool SectorSet::add_tile(const SkyTile& tile) {
-    return keep_tile(tile, false);
 }
 
 const SkyTile* SectorSet::tile(SectorId id) const {
-    if (tiles_.empty())
-        return nullptr;
-    const std::uint32_t value = tile_entry(id).load(std::memory_order_acquire);
-    return value == 0 ? nullptr : &tiles_[value - 1].tile;
+    const std::uint32_t value = tiles_.empty() ? 0 : tile_entry(id).load(std::memory_order_acquire);
+    return value == 0 ? find_tile(file_tiles_, id.i, id.j) : &tiles_[value - 1].tile;
 }
 
 }  // namespace drtv

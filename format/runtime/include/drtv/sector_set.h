@@ -129,9 +129,9 @@ class SectorSet {
     // sectors without a tile: 1.
     [[nodiscard]] float sky_factor(const Double3& world_m) const;
 
-    // A tile that was not made here, of a file of tiles. False where there is no room; one that is there
-    // stays.
-    bool add_tile(const SkyTile& tile);
+    // Tiles of a file (open_tiles), for sectors whose own is not known; they must stay where they are. Alone.
+    void use_tiles(std::span<const SkyTile> tiles) { file_tiles_ = tiles; }
+    // Null where none is known.
     [[nodiscard]] const SkyTile* tile(SectorId id) const;
 
   private:
@@ -147,7 +147,7 @@ class SectorSet {
     using TableEntry = std::atomic<std::uint32_t>;  // 0 empty, else an index plus 1
 
     [[nodiscard]] std::uint32_t free_run(std::uint32_t length, std::uint32_t limit, bool interiors) const;
-    bool keep_tile(const SkyTile& tile, bool replace);
+    void keep_tile(const SkyTile& tile);
     [[nodiscard]] TableEntry& tile_entry(SectorId id) const;
 
     SectorSetLimits limits_;
@@ -155,6 +155,7 @@ class SectorSet {
     std::span<TableEntry> slot_table_;
     std::span<TileEntry> tiles_;
     std::span<TableEntry> tile_table_;
+    std::span<const SkyTile> file_tiles_;
     std::span<InteriorBounds> interior_bounds_;
     std::uint64_t loads_ = 0;
 };
