@@ -35,7 +35,8 @@ Between keys_around(std::span<const Key> keys, double hour) {
     const std::size_t last = keys.size() - 1;
     const std::size_t first = second == 0 ? last : second - 1;
     second = second > last ? 0 : second;
-    const double length = within_day(double{keys[second].hour} - double{keys[first].hour});
+    const double round = second <= first ? day_hours : 0;
+    const double length = double{keys[second].hour} - double{keys[first].hour} + round;
     const double passed = within_day(at - double{keys[first].hour});
     const bool one_key = !(length > 0);
     return {first, second, one_key ? 0.0f : static_cast<float>(passed / length)};

@@ -107,6 +107,18 @@ struct Volume::State {
     }
 };
 
+[[nodiscard]] inline std::int32_t modulo(std::int32_t n, std::int32_t length) {
+    const std::int32_t rest = n % length;
+    return rest < 0 ? rest + length : rest;
+}
+
+// Moves the window to a camera and writes what changed, or all.
+void update_volume(Volume::State& state,
+                   const SectorSet& set,
+                   const RelitProbes& relit,
+                   const Double3& camera_m,
+                   bool write_all);
+
 // Which sectors lie under the window, and where in them its columns do.
 void look_under(Volume::State& state, const SectorSet& set, const RelitProbes& relit);
 
@@ -114,10 +126,14 @@ void look_under(Volume::State& state, const SectorSet& set, const RelitProbes& r
 void encode_probes(Volume::State& state, const RelitProbes& relit);
 
 // Writes the texels of a box, with the copies at the borders.
-void write_box(Volume::State& state, const RelitProbes& relit, const TexelBox& box);
+void write_rows(Volume::State& state, const TexelBox& box);
+void write_blurred(Volume::State& state, const RelitProbes& relit, const TexelBox& box);
 
-// A texel as the textures hold it: [k][r, g, b, a].
-using TexelColours = std::array<Float4, channel_count>;
+// Colours of a place without a probe, by the tile of its sector.
+[[nodiscard]] BasisColours fallback_at(const Volume::State& state,
+                                       const Volume::State::Under& under,
+                                       const Int3& place);
+
 // What texture k's texels hold at the window's place (x, y, z), decoded; of rgba8_sqrt, the root of it over
 // the scale.
 [[nodiscard]] Float4 stored_texel(const Volume::State& state, std::size_t k, const Int3& place);
