@@ -12,7 +12,7 @@ packages=(
 if [[ "${1:-}" == "--tests" ]]; then
   packages+=(
     black clang-14 clang-format-14 libbenchmark-dev libclang-rt-14-dev libgmock-dev libgtest-dev libxxhash-dev
-    python3-jsonschema qemu-user shellcheck util-linux
+    emscripten g++-12 g++-aarch64-linux-gnu node-acorn python3-jsonschema qemu-user shellcheck util-linux
   )
 fi
 

@@ -48,7 +48,7 @@ template <std::unsigned_integral Unsigned>
     return static_cast<std::int32_t>(load_u32(bytes, offset));
 }
 [[nodiscard]] inline float load_f32(ByteSpan bytes, std::size_t offset) {
-    return std::bit_cast<float>(load_u32(bytes, offset));
+    return __builtin_bit_cast(float, load_u32(bytes, offset));
 }
 
 template <std::integral Integer>
@@ -68,7 +68,7 @@ inline void append_u32(ByteVector& bytes, std::size_t count) {
     append_le(bytes, static_cast<std::uint32_t>(count));
 }
 inline void append_f32(ByteVector& bytes, float value) {
-    append_le(bytes, std::bit_cast<std::uint32_t>(value));
+    append_le(bytes, __builtin_bit_cast(std::uint32_t, value));
 }
 
 inline void append_bytes(ByteVector& bytes, ByteSpan more) {
@@ -79,7 +79,7 @@ inline void append_zeros(ByteVector& bytes, std::size_t count) {
 }
 
 [[nodiscard]] inline bool all_zero(ByteSpan bytes) {
-    return std::ranges::all_of(bytes, [](std::uint8_t byte) { return byte == 0; });
+    return std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == 0; });
 }
 
 // Fixed-point codes of an array of arrays of any depth, the last index fastest. Gives the offset behind them.

@@ -66,8 +66,8 @@ ReadStatus check_checksum(ByteSpan file) {
     const std::size_t table_bytes = load_u32(file, h::section_count) * layout::entry_bytes;
     const ByteSpan header = file.first(h::checksum);
     const ByteSpan table = file.subspan(layout::header_bytes, table_bytes);
-    const auto behind_header = std::ranges::copy(header, covered.begin()).out;
-    std::ranges::copy(table, behind_header);
+    const auto behind_header = std::copy(header.begin(), header.end(), covered.begin());
+    std::copy(table.begin(), table.end(), behind_header);
     const std::uint64_t hash = xxh64(ByteSpan(covered).first(h::checksum + table_bytes));
     if (hash == load_u64(file, h::checksum))
         return {};

@@ -14,7 +14,7 @@ namespace {
 using Rooms = layout::InteriorsLayout;
 
 // What the header says, beside the section.
-struct Content {
+struct InteriorsContent {
     const Section& section;
     ByteSpan raw;
     std::size_t interiors;
@@ -23,7 +23,7 @@ struct Content {
     Rooms parts;
 };
 
-Content content_of(const Section& section) {
+InteriorsContent content_of(const Section& section) {
     const InteriorsCounts counts = load_interiors_counts(section.raw);
     return {section, section.raw, counts.interiors, counts.vertices, counts.triangles, counts.parts()};
 }
@@ -56,12 +56,15 @@ struct Before {
 };
 
 template <class... Parts>
-ReadStatus refuse_interior(const Content& content, std::size_t n, std::size_t field, const Parts&... parts) {
+ReadStatus refuse_interior(const InteriorsContent& content,
+                           std::size_t n,
+                           std::size_t field,
+                           const Parts&... parts) {
     return refuse(content.section, Rooms::entry_at(n) + field, "interior ", n, parts...);
 }
 
 // Afterwards all parts of the section lie inside it.
-ReadStatus check_header(const Content& content) {
+ReadStatus check_interiors_header(const InteriorsContent& content) {
     const auto& [section, raw, interiors, vertices, triangles, parts] = content;
     if (interiors > max_interiors) {
         return refuse(section,
@@ -104,7 +107,10 @@ ReadStatus check_header(const Content& content) {
 }
 
 // Where the interior lies, and by which probe it is lit.
-ReadStatus check_place(const Content& content, std::size_t n, const Entry& entry, std::size_t probe_count) {
+ReadStatus check_place(const InteriorsContent& content,
+                       std::size_t n,
+                       const Entry& entry,
+                       std::size_t probe_count) {
     const std::size_t at = Rooms::entry_at(n);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t field = Rooms::origin + 4 * axis;
@@ -128,7 +134,10 @@ ReadStatus check_place(const Content& content, std::size_t n, const Entry& entry
 }
 
 // Which vertices and triangles are the interior's.
-ReadStatus check_ranges(const Content& content, std::size_t n, const Entry& entry, const Before& before) {
+ReadStatus check_ranges(const InteriorsContent& content,
+                        std::size_t n,
+                        const Entry& entry,
+                        const Before& before) {
     if (entry.vertices > max_interior_vertices) {
         return refuse_interior(
             content, n, Rooms::vertices_of, ": ", entry.vertices, " vertices are over the limit of 65536");
@@ -162,7 +171,7 @@ ReadStatus check_ranges(const Content& content, std::size_t n, const Entry& entr
     return {};
 }
 
-ReadStatus check_triangles(const Content& content, std::size_t n, const Entry& entry) {
+ReadStatus check_triangles(const InteriorsContent& content, std::size_t n, const Entry& entry) {
     const std::size_t start = content.parts.triangle_at(entry.first_triangle);
     for (std::size_t corner = 0; corner < 3 * entry.triangles; ++corner) {
         const std::size_t at = start + 2 * corner;
@@ -183,7 +192,7 @@ ReadStatus check_triangles(const Content& content, std::size_t n, const Entry& e
     return {};
 }
 
-ReadStatus check_interiors(const Content& content, std::size_t probe_count, Before& before) {
+ReadStatus check_interiors(const InteriorsContent& content, std::size_t probe_count, Before& before) {
     for (std::size_t n = 0; n < content.interiors; ++n) {
         const Entry entry = load_entry(content.raw, Rooms::entry_at(n));
         if (ReadStatus status = check_place(content, n, entry, probe_count); !status.ok())
@@ -209,8 +218,8 @@ ReadStatus check_total(
 }  // namespace
 
 ReadStatus check_interiors_content(const Section& section, std::size_t probe_count) {
-    const Content content = content_of(section);
-    if (ReadStatus status = check_header(content); !status.ok())
+    const InteriorsContent content = content_of(section);
+    if (ReadStatus status = check_interiors_header(content); !status.ok())
         return status;
     Before all;
     if (ReadStatus status = check_interiors(content, probe_count, all); !status.ok())

@@ -15,7 +15,7 @@ namespace {
 using Local = layout::LocalTransferLayout;
 
 // What the header says, beside the section.
-struct Content {
+struct LocalContent {
     const Section& section;
     ByteSpan raw;
     std::size_t probes;
@@ -25,7 +25,7 @@ struct Content {
     Local parts;
 };
 
-Content content_of(const Section& section, std::size_t probes) {
+LocalContent content_of(const Section& section, std::size_t probes) {
     const LocalTransferCounts counts = load_local_transfer_counts(section.raw);
     return {section,
             section.raw,
@@ -36,7 +36,7 @@ Content content_of(const Section& section, std::size_t probes) {
             counts.parts(probes)};
 }
 
-ReadStatus check_padding(const Content& content, std::size_t start, std::size_t end, const char* part) {
+ReadStatus check_padding(const LocalContent& content, std::size_t start, std::size_t end, const char* part) {
     if (all_zero(content.raw.subspan(start, end - start)))
         return {};
     return refuse(
@@ -44,7 +44,7 @@ ReadStatus check_padding(const Content& content, std::size_t start, std::size_t 
 }
 
 // Afterwards all parts of the section lie inside it.
-ReadStatus check_header(const Content& content) {
+ReadStatus check_local_header(const LocalContent& content) {
     const auto& [section, raw, probes, sources, pairs, mask_bytes, parts] = content;
     const std::size_t max_sources = Local::max_sources(section.version);
     if (sources > max_sources) {
@@ -88,7 +88,7 @@ ReadStatus check_header(const Content& content) {
     return {};
 }
 
-ReadStatus check_source(const Content& content, std::size_t s) {
+ReadStatus check_source(const LocalContent& content, std::size_t s) {
     const std::size_t at = Local::source_at(s);
     const std::int8_t di = load_i8(content.raw, at + Local::di);
     const std::int8_t dj = load_i8(content.raw, at + Local::dj);
@@ -119,7 +119,7 @@ ReadStatus check_source(const Content& content, std::size_t s) {
                   probes);
 }
 
-ReadStatus check_sources(const Content& content) {
+ReadStatus check_sources(const LocalContent& content) {
     for (std::size_t s = 0; s < content.sources; ++s) {
         if (ReadStatus status = check_source(content, s); !status.ok())
             return status;
@@ -147,7 +147,7 @@ std::size_t find_bit(ByteSpan mask, std::size_t start) {
 }
 
 // Adds the receiver's pairs to `pairs`, which is the number of those before it.
-ReadStatus check_receiver(const Content& content, std::size_t p, std::size_t& pairs) {
+ReadStatus check_receiver(const LocalContent& content, std::size_t p, std::size_t& pairs) {
     const auto& [section, raw, probes, sources, said_pairs, mask_bytes, parts] = content;
     const std::size_t at = parts.receiver_at(p);
     const std::size_t reserved_at = at + Local::receiver_reserved;
@@ -180,7 +180,7 @@ ReadStatus check_receiver(const Content& content, std::size_t p, std::size_t& pa
                   sources);
 }
 
-ReadStatus check_receivers(const Content& content) {
+ReadStatus check_receivers(const LocalContent& content) {
     std::size_t pairs = 0;
     for (std::size_t p = 0; p < content.probes; ++p) {
         if (ReadStatus status = check_receiver(content, p, pairs); !status.ok())
@@ -203,8 +203,8 @@ ReadStatus check_receivers(const Content& content) {
 }  // namespace
 
 ReadStatus check_local_transfer_content(const Section& section, std::size_t probe_count) {
-    const Content content = content_of(section, probe_count);
-    if (ReadStatus status = check_header(content); !status.ok())
+    const LocalContent content = content_of(section, probe_count);
+    if (ReadStatus status = check_local_header(content); !status.ok())
         return status;
     if (ReadStatus status = check_sources(content); !status.ok())
         return status;

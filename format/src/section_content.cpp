@@ -72,7 +72,7 @@ ReadStatus check_convergence(const Section& section) {
 
 // A name, and zeros up to the end.
 bool is_padded_name(ByteSpan bytes) {
-    const auto end = std::ranges::find(bytes, 0);
+    const auto end = std::find(bytes.begin(), bytes.end(), 0);
     return bytes.front() != 0 && end != bytes.end() && all_zero(ByteSpan(end, bytes.end()));
 }
 

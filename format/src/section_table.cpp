@@ -10,7 +10,7 @@
 namespace drtv {
 namespace {
 
-SectionEntry load_entry(ByteSpan file, std::size_t n) {
+SectionEntry load_section_entry(ByteSpan file, std::size_t n) {
     namespace e = layout::entry;
     const ByteSpan bytes = file.subspan(layout::entry_at(n), layout::entry_bytes);
     SectionEntry entry;
@@ -107,9 +107,11 @@ constexpr std::array<std::pair<SectionKind, std::string_view>, 12> section_names
      {SectionKind::quality, "quality"}}};
 
 std::string_view name_of_section(std::uint16_t kind) {
-    const auto* found = std::ranges::find(
-        section_names, static_cast<SectionKind>(kind), &std::pair<SectionKind, std::string_view>::first);
-    return found == section_names.end() ? "unknown" : found->second;
+    for (const auto& [known, name] : section_names) {
+        if (known == static_cast<SectionKind>(kind))
+            return name;
+    }
+    return "unknown";
 }
 
 std::string section_name(const SectionEntry& entry) {
@@ -131,7 +133,7 @@ ReadStatus load_section_table(ByteSpan file, SectionTable& table) {
     const std::size_t section_count = load_u32(file, layout::header::section_count);
     std::size_t end = layout::entry_at(section_count);
     for (std::size_t n = 0; n < section_count; ++n) {
-        const SectionEntry entry = load_entry(file, n);
+        const SectionEntry entry = load_section_entry(file, n);
         if (ReadStatus status = check_entry(file, n, entry, end); !status.ok())
             return status;
         if (ReadStatus status = check_stored(file, entry, end); !status.ok())

@@ -4,35 +4,17 @@
 #include "bytes.h"
 #include "checksum.h"
 #include "read_failure.h"
+#include "tile_layout.h"
 
 #include <algorithm>
 #include <cstdlib>
-#include <tuple>
 
 namespace drtv {
 namespace {
 
-// Of the header.
-constexpr std::size_t magic_at = 0;
-constexpr std::size_t major_at = 4;
-constexpr std::size_t minor_at = 6;
-constexpr std::size_t size_at = 8;
-constexpr std::size_t count_at = 12;
-constexpr std::size_t header_bytes = 32;
-constexpr std::size_t checksum_bytes = 8;
+using namespace tile_layout;
 
-constexpr std::uint32_t magic = 0x4C545244;  // "DRTL"
-constexpr std::uint16_t major_version = 1;
-
-std::size_t file_bytes(std::size_t count) {
-    return header_bytes + count * sizeof(SkyTile) + checksum_bytes;
-}
-
-bool is_before(const SkyTile& a, const SkyTile& b) {
-    return std::tuple(a.j, a.i) < std::tuple(b.j, b.i);
-}
-
-ReadStatus check_header(std::span<const std::uint8_t> bytes) {
+ReadStatus check_tile_header(std::span<const std::uint8_t> bytes) {
     if (bytes.size() < 4 || load_u32(bytes, magic_at) != magic)
         return fail(ReadError::not_a_sector_file, 0, "not a file of tiles: it does not start with \"DRTL\"");
     if (bytes.size() >= size_at && load_u16(bytes, major_at) != major_version)
@@ -89,7 +71,7 @@ ReadStatus check_tile(const SkyTile& tile, std::size_t at) {
 }  // namespace
 
 ReadStatus open_tiles(std::span<const std::uint8_t> bytes, std::span<const SkyTile>& tiles) {
-    if (ReadStatus status = check_header(bytes); !status.ok())
+    if (ReadStatus status = check_tile_header(bytes); !status.ok())
         return status;
     const std::size_t end = bytes.size() - checksum_bytes;
     if (load_u64(bytes, end) != xxh64(bytes.first(end)))
@@ -108,22 +90,6 @@ ReadStatus open_tiles(std::span<const std::uint8_t> bytes, std::span<const SkyTi
     }
     tiles = found;
     return {};
-}
-
-std::vector<std::uint8_t> write_tiles(std::span<const SkyTile> tiles) {
-    std::vector<SkyTile> sorted(tiles.begin(), tiles.end());
-    std::sort(sorted.begin(), sorted.end(), is_before);
-    std::vector<std::uint8_t> bytes;
-    append_u32(bytes, magic);
-    append_u16(bytes, major_version);
-    append_u16(bytes, 0);
-    append_u32(bytes, file_bytes(sorted.size()));
-    append_u32(bytes, sorted.size());
-    append_zeros(bytes, header_bytes - bytes.size());
-    const auto* first = reinterpret_cast<const std::uint8_t*>(sorted.data());
-    append_bytes(bytes, {first, sorted.size() * sizeof(SkyTile)});
-    append_le(bytes, xxh64(bytes));
-    return bytes;
 }
 
 const SkyTile* find_tile(std::span<const SkyTile> tiles, std::int32_t i, std::int32_t j) {

@@ -233,7 +233,7 @@ class Sectors:
         for index, sector in self.by_index.items():
             away = math.dist(place[:2], [64 * i + 32 for i in index])
             for n, mesh in enumerate(sector.get("interiors", [])):
-                if not lies_near_bounds(mesh, place, soft_m):
+                if not mesh["triangles"] or not lies_near_bounds(mesh, place, soft_m):
                     continue
                 inside = signed_distance(mesh, place)
                 share = clamp(1 / 2 + inside / soft_m, 0, 1) if soft_m > 0 else float(inside > 0)

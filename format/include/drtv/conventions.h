@@ -69,7 +69,7 @@ inline constexpr float transfer_bound_y1 = 0.4887f;
 [[nodiscard]] constexpr float scale_of_exponent(int exponent) {
     constexpr int limit = 126, float_bias = 127, float_mantissa_bits = 23;
     const auto biased = static_cast<std::uint32_t>(std::clamp(exponent, -limit, limit) + float_bias);
-    return std::bit_cast<float>(biased << float_mantissa_bits);
+    return __builtin_bit_cast(float, biased << float_mantissa_bits);  // std::bit_cast is too new for some
 }
 
 [[nodiscard]] constexpr float decode_fixed(std::int16_t q, float scale) {

@@ -1,5 +1,6 @@
 // Four floats at once, with the same bits from SSE2, NEON and plain C++: each operation is rounded by itself,
-// in the order in which it is written. DRTV_SCALAR chooses the plain one.
+// in the order in which it is written. DRTV_SCALAR chooses the plain one, DRTV_NO_AVX2 leaves out what asks
+// the CPU for more than SSE2.
 #pragma once
 
 #include "half.h"
@@ -13,7 +14,7 @@
 #if !defined(DRTV_SCALAR) && defined(__SSE2__)
 #define DRTV_SSE2
 #include <emmintrin.h>
-#if defined(__GNUC__) && defined(__x86_64__)
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(DRTV_NO_AVX2)
 #define DRTV_AVX2 __attribute__((target("avx2,f16c")))
 #include <immintrin.h>
 #endif
