@@ -30,7 +30,7 @@ PUBLIC = [
     "volume",
 ]
 
-# Of format/src: what opens a raw file. All of format/runtime/src comes with it.
+# Of format/src: what opens a raw file. All of format/runtime/src comes with it but for the C face, which is libdrtv's.
 SOURCES = [
     "checksum",
     "codec_none",
@@ -94,7 +94,11 @@ def main():
     header = "".join(pair.text_of(pair.path_of(f"drtv/{name}.h", FORMAT)) for name in PUBLIC)
     runtime = os.path.join(FORMAT, "runtime", "src")
     sources = [os.path.join(FORMAT, "src", f"{name}.cpp") for name in SOURCES]
-    sources += [os.path.join(runtime, name) for name in sorted(os.listdir(runtime)) if name.endswith(".cpp")]
+    sources += [
+        os.path.join(runtime, name)
+        for name in sorted(os.listdir(runtime))
+        if name.endswith(".cpp") and name != "c_api.cpp"
+    ]
     body = "".join(pair.text_of(path) for path in sources)
     made = "// Made by amalgamate.py of drtv's format/: change it there.\n//\n"
     os.makedirs(sys.argv[1], exist_ok=True)

@@ -223,7 +223,7 @@ class Sectors:
                 continue
             height = self.height_in_cells(index, place[2]) - 1 / 2
             low = math.floor(height)
-            for cz, part in ((low, low + 1 - height), (low + 1, height - low)):
+            for cz, part in ((low, 1 - (height - low)), (low + 1, height - low)):
                 shares.append((self.cell(index, *column, cz), share * part))
         return [(named, share) for named, share in shares if share > 0]
 
@@ -258,8 +258,8 @@ def columns_around(place):
     west, south = math.floor(x), math.floor(y)
     return [
         ((cx // 16, cy // 16), (cx % 16, cy % 16), sx * sy)
-        for cx, sx in ((west, west + 1 - x), (west + 1, x - west))
-        for cy, sy in ((south, south + 1 - y), (south + 1, y - south))
+        for cx, sx in ((west, 1 - (x - west)), (west + 1, x - west))
+        for cy, sy in ((south, 1 - (y - south)), (south + 1, y - south))
     ]
 
 

@@ -35,7 +35,7 @@ TOLERANCE, SUM_TOLERANCE = 2e-5, 1e-5  # of the largest number of a line
 SHARE_ROUNDING = 2.0**-22  # shares are floats: of the largest number of all lines
 WORLD = {(-1, 2): GOLDEN_1_3, (0, 2): GOLDEN_1_3, (-1, 3): GOLDEN_1_2, (0, 3): GOLDEN_1_1, (-2, 2): GOLDEN}
 LOW, HIGH = (-140, 116, 4), (76, 268, 34)  # of the places asked: the world and some metres around it
-CORNER = (0, 192, 14)  # of the sectors that hold interiors, and of one without
+CORNER = (0, 192, 12)  # of the sectors that hold interiors, and of one without
 SKY = {"zenith": (2, 4, 9), "horizon": (5, 6, 8), "sun_side": (3, 2, 1)}
 SUN, HIGH_SUN, LOW_SUN, NIGHT_SUN = (9, 8.5, 7), (1, -2, 3), (-3, 0.5, 0.25), (2, 1, -0.5)
 GROUP_COLOURS = {"lanterns": (1, 0.5, 0.25), "nächtliche Fenster": (0.5, 2, 3)}
@@ -111,9 +111,10 @@ def shuffle_local(data, at, probes, rng):
 
 
 def shuffle_interiors(data, at, rng):
-    """All around one corner of four sectors, so that they overlap."""
+    """All around one corner of four sectors, 2.5 m of which all of them hold."""
     for n, shift in enumerate((0, 4)):
-        origin = [int(UNITS * (corner - rng.uniform(2, 6))) for corner in CORNER]
+        low_corner = (corner - rng.uniform(*back) for corner, back in zip(CORNER, ((3, 5), (3, 5), (1, 3))))
+        origin = [int(UNITS * metres) for metres in low_corner]
         struct.pack_into("<3i2B", data, at + 16 + 32 * n, *origin, shift, 2)
 
 
@@ -275,11 +276,11 @@ class Numbers(Tool):
 
     def test_of_interiors_that_hold_a_place_the_right_one_lights_it(self):
         x, y, z = CORNER
-        diagonal = [((x + n / 8, y + n / 8, z - 1), (0, 0, 1)) for n in range(-24, 25)]
-        border = [((x, y - n / 8, z - 1), (0, 0, 1)) for n in range(25)]
+        diagonal = [((x + n / 8, y + n / 8, z), (0, 0, 1)) for n in range(-20, 21)]
+        border = [((x, y - n / 8, z), (0, 0, 1)) for n in range(21)]
         relighter = reference.Relighter(self.sectors, reference.Light())
         lines = self.compare_places(diagonal + border, relighter, [], {})
-        chosen = {tuple(line["interior"]["sector"]) for line in lines if line["interior"]}
+        chosen = {tuple(line["interior"]["sector"]) for line in lines}
         self.assertEqual(chosen, {(-1, 2), (0, 2)})
 
     def test_light_groups(self):
@@ -351,12 +352,17 @@ class Numbers(Tool):
             self.compare_places(places, relighter, arguments, {"sampling": sampling})
 
     def test_far_away_there_is_the_open_sky(self):
-        place = ((1e9, -1e9, 1e9), (0, 0, 1))
+        places = [
+            ((x, y, z), (0, 0, 1)) for x in (1e9, -1e300, 0) for y in (-1e9, 1e300) for z in (-1e300, 9, 1e9)
+        ]
+        light = reference.Light(sky=reference.constant_sky((1, 2, 4)))
+        relighter = reference.Relighter(self.sectors, light)
         for sampling in ("trilinear", "nearest"):
-            (line,) = self.asked([place], "--sky", "1,2,4", "--by", sampling)
-            self.assertEqual((line["status"], line["probe"], line["interior"]), ("no_sector", None, None))
-            for channel, expected in zip(line["colour"], (1, 2, 4)):
-                self.assertAlmostEqual(channel, expected, delta=TOLERANCE * 4)
+            arguments = ["--sky", "1,2,4", "--by", sampling]
+            for line in self.compare_places(places, relighter, arguments, {"sampling": sampling}):
+                self.assertEqual((line["status"], line["probe"], line["interior"]), ("no_sector", None, None))
+                for channel, expected in zip(line["colour"], (1, 2, 4)):
+                    self.assertAlmostEqual(channel, expected, delta=TOLERANCE * 4)
 
     def test_one_place_is_the_same_as_a_line_of_many(self):
         place = ((-20.5, 150.25, 12.125), (0.5, -0.25, 1))

@@ -1,0 +1,88 @@
+/* A game in C11: c_user FILE X Y Z prints status, colour and what a volume holds there, as one line. */
+#include <drtv/drtv.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void* memory_of(size_t bytes) {
+    return bytes == 0 ? NULL : aligned_alloc(16, (bytes + 15) / 16 * 16);
+}
+
+int main(int argc, char** argv) {
+    if (argc != 5 || drtv_abi() != DRTV_ABI)
+        return 1;
+    FILE* file = fopen(argv[1], "rb");
+    void* bytes = memory_of(1 << 20);
+    const size_t count = file == NULL ? 0 : fread(bytes, 1, 1 << 20, file);
+
+    drtv_limits limits = drtv_default_limits();
+    limits.sectors = 4;
+    limits.probes = 4 * 255;
+    limits.tiles = 16;
+    const size_t set_bytes = drtv_set_bytes(&limits);
+    void* set_memory = memory_of(set_bytes);
+    if (drtv_set_make(set_memory, set_bytes - 1, &limits) != NULL ||
+        drtv_set_make((char*)set_memory + 4, set_bytes, &limits) != NULL)
+        return 2;
+    drtv_set* set = drtv_set_make(set_memory, set_bytes, &limits);
+    char why[40];
+    if (drtv_set_load(set, "no file", 7, why, sizeof why) != DRTV_UNREADABLE || strlen(why) != sizeof why - 1)
+        return 3;
+    if (drtv_set_load(set, bytes, count, why, sizeof why) != DRTV_LOADED) {
+        printf("%s\n", why);
+        return 4;
+    }
+
+    drtv_light light = drtv_default_light();
+    const float zenith[3] = {0.2f, 0.4f, 0.9f}, horizon[3] = {0.5f, 0.6f, 0.7f}, side[3] = {0.3f, 0.2f, 0.1f};
+    const float to_sun[3] = {3, 4, 12};
+    drtv_gradient_sky(zenith, horizon, side, to_sun, light.sky);
+    for (int c = 0; c < 3; ++c) {
+        light.sun_irradiance[c] = 2;
+        light.sun_direction[c] = to_sun[c];
+    }
+    const drtv_group groups[1] = {{"lanterns", {1, 2, 3}}};
+    light.groups = groups;
+    light.group_count = 1;
+
+    drtv_ambient_place place = drtv_default_place();
+    for (int axis = 0; axis < 3; ++axis)
+        place.at[axis] = atof(argv[2 + axis]);
+    const drtv_lamp lamp = {{place.at[0], place.at[1], place.at[2]}, {1, 2, 3}};
+    drtv_share shares[DRTV_SHARES_PER_LAMP];
+    const size_t share_count = drtv_split_light(set, &lamp, shares);
+    drtv_ambient ambient;
+    drtv_ambient_at(set, &light, shares, share_count, &place, &ambient);
+
+    const size_t relit_bytes = drtv_relit_bytes(&limits, 0);
+    void* relit_memory = memory_of(relit_bytes);
+    drtv_relit* relit = drtv_relit_make(relit_memory, relit_bytes, &limits, 0);
+    drtv_volume_settings settings = drtv_default_volume();
+    settings.size[0] = 1;
+    if (drtv_volume_bytes(&settings, &limits) != 0)
+        return 5;
+    settings.size[0] = 32;
+    settings.encoding = DRTV_RGBA16F;
+    const size_t volume_bytes = drtv_volume_bytes(&settings, &limits);
+    void* volume_memory = memory_of(volume_bytes);
+    drtv_volume* volume = drtv_volume_make(volume_memory, volume_bytes, &settings, &limits);
+    drtv_relit_set_light(relit, DRTV_NOW, &light);
+    const drtv_sector_id golden = {-1, 2}, missing = {5, 5};
+    if (drtv_relit_sector(relit, set, DRTV_NOW, golden, &light, NULL, 0) != 1 ||
+        drtv_relit_sector(relit, set, DRTV_NOW, missing, &light, NULL, 0) != 0)
+        return 6;
+    drtv_volume_update(volume, set, relit, place.at, 0);
+    size_t boxes = 0, texture_bytes = 0;
+    const drtv_box* dirty = drtv_volume_dirty(volume, &boxes);
+    const void* texels = drtv_volume_texels(volume, 2, &texture_bytes);
+    drtv_shader_inputs inputs;
+    drtv_volume_shader_inputs(volume, &inputs);
+    if (boxes != 1 || dirty[0].size[0] != 34 || texels == NULL || drtv_volume_texels(volume, 3, &texture_bytes) != NULL ||
+        texture_bytes != 34u * 98 * 18 * 8 || inputs.scale != 1 || !(drtv_relit_largest(relit, set) > 0))
+        return 7;
+    printf("%d %.9g %.9g %.9g\n", ambient.status, ambient.colour[0], ambient.colour[1], ambient.colour[2]);
+    drtv_set_drop(set, -1, 2);
+    drtv_set_retire(set);
+    return drtv_set_has(set, -1, 2);
+}
