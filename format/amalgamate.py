@@ -97,7 +97,7 @@ def main():
     sources += [
         os.path.join(runtime, name)
         for name in sorted(os.listdir(runtime))
-        if name.endswith(".cpp") and name != "c_api.cpp"
+        if name.endswith(".cpp") and not name.startswith("c_api")
     ]
     body = "".join(pair.text_of(path) for path in sources)
     made = "// Made by amalgamate.py of drtv's format/: change it there.\n//\n"

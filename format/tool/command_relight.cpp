@@ -78,7 +78,7 @@ void print_row(const RelightPoint& point, const Ambient& ambient) {
     const auto& [x, y, z] = point.at;
     const auto& [nx, ny, nz] = point.normal;
     const auto& [r, g, b] = ambient.colour;
-    std::printf("%10.3f %10.3f %9.3f  %6.3f %6.3f %6.3f  %-9s  %-14s  %-14s  %10.5g %10.5g %10.5g\n",
+    std::printf("%10.8g %10.8g %9.7g  %6.3f %6.3f %6.3f  %-9s  %-14s  %-14s  %10.5g %10.5g %10.5g\n",
                 x,
                 y,
                 z,

@@ -56,18 +56,28 @@ void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& r
     relight->add_option("--by", request.by, "Which probes: nearest, trilinear, volume")
         ->check(one_of({"nearest", "trilinear", "volume"}))
         ->capture_default_str();
-    relight->add_option("--camera", request.camera, "Of the volume's window; by default each place itself")
-        ->type_name("x,y,z");
-    relight->add_option("--encoding", request.encoding, "Of the volume's texels: rgba8, rgba8-sqrt, rgba16f")
-        ->check(one_of({"rgba8", "rgba8-sqrt", "rgba16f"}))
-        ->capture_default_str();
+    CLI::Option* camera =
+        relight
+            ->add_option("--camera", request.camera, "Of the volume's window; by default each place itself")
+            ->type_name("x,y,z");
+    CLI::Option* encoding =
+        relight
+            ->add_option("--encoding", request.encoding, "Of the volume's texels: rgba8, rgba8-sqrt, rgba16f")
+            ->check(one_of({"rgba8", "rgba8-sqrt", "rgba16f"}))
+            ->capture_default_str();
     relight->add_option("--offset", request.offset_m, "Metres along the normal at which probes are asked")
         ->check(finite_number());
     relight->add_flag_callback(
-        "--no-interiors", [&request] { request.interiors = false; }, "As if there were none");
+        "--no-interiors",
+        [&request] { request.interiors = false; },
+        "Places inside are lit as outside; lamps still know interiors");
     relight->add_flag("--json", request.json, "Print JSON, one object per place");
     add_light(*relight, request.light);
-    relight->callback([&request, &run, at, points] {
+    relight->callback([&request, &run, at, points, camera, encoding] {
+        for (const CLI::Option* option : {camera, encoding}) {
+            if (option->count() > 0 && request.by != "volume")
+                throw CLI::ValidationError(option->get_name(), "goes with --by volume");
+        }
         if (at->count() == 0 && points->count() == 0)
             throw CLI::RequiredError("--at with --normal, or --points,");
         run = [&request] { return run_relight(request); };

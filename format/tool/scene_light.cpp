@@ -5,6 +5,8 @@
 #include "number_list.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <utility>
 
 namespace drtv::tool {
@@ -32,7 +34,9 @@ bool none_below_zero(const std::vector<double>& numbers, const char* option) {
     const auto low = std::find_if(numbers.begin(), numbers.end(), [](double n) { return n < 0; });
     if (low == numbers.end())
         return true;
-    complain(std::string("relight: ") + option + ": light below 0, " + std::to_string(*low));
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%g", *low);
+    complain(std::string("relight: ") + option + " takes light of at least 0, not " + text.data());
     return false;
 }
 

@@ -344,6 +344,25 @@ TEST(LocalRelighter, ReachesTheNeighboursAndNoFurther) {
     EXPECT_TRUE(LocalRelighter(far, split).empty());
 }
 
+TEST(LocalRelighter, AThousandLampsAreAThousandTimesOne) {
+    constexpr SectorSetLimits limits{.sectors = 4, .probes = 64, .interiors = 0, .tiles = 4};
+    OwnedSet set(limits);
+    const LoadedSector& sector = set.add(connected_sector({0, 0}, 0.2f));
+    std::array<LightShare, 8> shares;
+    ASSERT_EQ(split_light(*set, {{8, 8, 2}, {1, 2, 3}}, shares), 1u);
+    const std::vector<LightShare> many(1000, shares[0]);
+    const SceneLight dark;
+    const float one = ambient_at(*set, dark, {shares.data(), 1}, {.at = {30, 30, 2}}).colour[1];
+    EXPECT_GT(one, 0.01f);
+    EXPECT_NEAR(ambient_at(*set, dark, many, {.at = {30, 30, 2}}).colour[1], 1000 * one, 0.01f * one);
+    std::vector<std::byte> memory(RelitProbes::memory_bytes(limits, false));
+    RelitProbes relit(memory, limits, false);
+    relit.relight(Shown::now, sector, dark, {shares.data(), 1});
+    const float few = relit.colours(sector, 5)[0][1];
+    relit.relight(Shown::now, sector, dark, many);
+    EXPECT_NEAR(relit.colours(sector, 5)[0][1], 1000 * few, few);
+}
+
 TEST(LocalRelighter, ALampThatMovesChangesColoursInSmallSteps) {
     OwnedSet set;
     const LoadedSector& sector = set.add(connected_sector({0, 0}, 0.2f));

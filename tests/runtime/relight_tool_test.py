@@ -78,7 +78,9 @@ def shuffle_grid(data, at, probes, rng):
     struct.pack_into("<iI", data, at, rng.randint(4 * UNITS, 12 * UNITS), rng.randint(UNITS // 2, 2 * UNITS))
     for cell in range(4096):
         data[at + 16 + cell] = rng.choice([*range(probes)] * 3 + [probes, NO_PROBE])
-    for column in rng.sample(range(256), 40):
+    hole_x, hole_y = (rng.randint(0, 11) for _ in range(2))
+    hole = [hole_x + x + 16 * (hole_y + y) for x in range(5) for y in range(5)]
+    for column in hole + rng.sample(range(256), 20):
         data[at + 16 + column : at + 16 + 4096 : 256] = bytes([NO_PROBE]) * 16
 
 
@@ -161,9 +163,10 @@ class Numbers(Tool):
         cls.parsed = [sector_file.read(data) for data in cls.files.values()]
         cls.sectors = reference.Sectors(cls.parsed)
         cls.lamps = [
-            reference.Lamp((-4.5, 150.25, 14), (9, 4, 1)),
-            reference.Lamp((-30, 188.5, 11.5), (1, 5, 9)),
-            reference.Lamp((7.5, 204, 12), (3, 3, 3)),
+            reference.Lamp(
+                [rng.uniform(*range_) for range_ in zip(LOW, HIGH)], [rng.uniform(1, 9) for _ in range(3)]
+            )
+            for _ in range(10)
         ]
         vertices = cls.sectors.by_index[-1, 2]["interiors"][0]["vertices"]
         cls.indoor_lamp = reference.Lamp([sum(axis) / len(axis) for axis in zip(*vertices)], (2, 4, 6))
@@ -426,7 +429,7 @@ class Usage(Tool):
             ('--mode: takes one of literal, accurate, not "bad"', *self.PLACE, "--mode=bad"),
             ('--by: takes one of nearest, trilinear, volume, not "bad"', *self.PLACE, "--by=bad"),
             ("--sun-direction has no length", *self.PLACE, "--sun-direction=0,0,0"),
-            ("--sky: light below 0", *self.PLACE, "--sky=-1,1,1"),
+            ("--sky takes light of at least 0", *self.PLACE, "--sky=-1,1,1"),
             ("--offset: takes a number", *self.PLACE, "--offset=nan"),
         ]:
             self.assert_refused(USAGE, words, self.world, *arguments)

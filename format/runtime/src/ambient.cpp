@@ -2,6 +2,7 @@
 
 #include "vector.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace drtv {
@@ -39,13 +40,16 @@ class Gathering {
 
     void add_probe(const LoadedSector& sector, std::size_t p, float share) {
         const SectorView& view = sector.view;
-        const LocalRelighter local(sector, lights_);
         BasisColours colours = relight(view, p, light_);
-        local.add_to(colours, p);
+        BasisColours lamps{};
+        for (std::size_t first = 0; first < lights_.size(); first += LocalRelighter::max_shares) {
+            const std::size_t count = std::min(lights_.size() - first, LocalRelighter::max_shares);
+            const LocalRelighter local(sector, lights_.subspan(first, count));
+            local.add_to(colours, p);
+            local.add_to(lamps, p);
+        }
         add(colours_, clamped(colours), share);
 
-        BasisColours lamps{};
-        local.add_to(lamps, p);
         add_part(parts_.sky_direct, relight(TransferCodes{}, view.sky_visibility[p], sky_), share);
         add_part(parts_.sky_bounce, relight(view.transfer[p], VisibilityCodes{}, sky_), share);
         add_part(parts_.sun_bounce, relight(view.transfer[p], VisibilityCodes{}, sun_), share);

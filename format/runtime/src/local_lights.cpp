@@ -86,7 +86,7 @@ LocalRelighter::LocalRelighter(const LoadedSector& sector, std::span<const Light
     for (const LightShare& share : shares) {
         const std::int64_t di = std::int64_t{share.sector.i} - sector_->i;
         const std::int64_t dj = std::int64_t{share.sector.j} - sector_->j;
-        if (std::abs(di) > 1 || std::abs(dj) > 1 || count_ == max_shares)
+        if (std::abs(di) > 1 || std::abs(dj) > 1)
             continue;
         const auto source = std::find_if(sources.begin(), sources.end(), [&](const LocalSource& s) {
             return s.probe == share.probe && s.di == di && s.dj == dj;

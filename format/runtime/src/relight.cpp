@@ -206,26 +206,6 @@ float ProbeRelighter::pack_all(std::span<PackedColours> out) const {
     return Kernels::pack_all(*this, out.data());
 }
 
-PackedColours packed(const BasisColours& colours) {
-    PackedColours result;
-    for (std::size_t k = 0; k < channel_count; ++k) {
-        for (std::size_t c = 0; c < channel_count; ++c)
-            result[k][c] = half_of(colours[k][c]);
-        result[k][3] = half_of(colours[3][k]);
-    }
-    return result;
-}
-
-BasisColours unpacked(const PackedColours& colours) {
-    BasisColours result;
-    for (std::size_t k = 0; k < channel_count; ++k) {
-        for (std::size_t c = 0; c < channel_count; ++c)
-            result[k][c] = float_of_half(colours[k][c]);
-        result[3][k] = float_of_half(colours[k][3]);
-    }
-    return result;
-}
-
 BasisColours relight(const SectorView& sector, std::size_t p, const SceneLight& light) {
     return ProbeRelighter(sector, light)(p);
 }

@@ -3,6 +3,8 @@
 #include "arena.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 
 namespace drtv {
 namespace {
@@ -18,6 +20,14 @@ BasisColours mixed(const BasisColours& now, const BasisColours& next, float shar
             colours[b][c] = (1 - share) * now[b][c] + share * next[b][c];
     }
     return colours;
+}
+
+// Whether a share is near enough to bring something.
+bool has_source(const SectorView& sector, std::span<const LightShare> shares) {
+    return std::any_of(shares.begin(), shares.end(), [&](const LightShare& share) {
+        return std::abs(std::int64_t{share.sector.i} - sector.i) <= 1 &&
+               std::abs(std::int64_t{share.sector.j} - sector.j) <= 1;
+    });
 }
 
 float largest_of(const BasisColours& colours) {
@@ -54,19 +64,25 @@ void RelitProbes::relight(Shown shown,
                           std::span<const LightShare> lamps) {
     const std::size_t index = index_of(shown);
     const ProbeRelighter relighter(sector.view, light);
-    const LocalRelighter local(sector, lamps);
     const std::span<PackedColours> out =
         lights_[index].colours.subspan(sector.first_probe, sector.view.probe_count);
     float largest = 0;
-    if (local.empty()) {
+    if (!has_source(sector.view, lamps)) {
         largest = relighter.pack_all(out);
     } else {
+        std::array<BasisColours, max_probes> colours;
+        for (std::size_t p = 0; p < out.size(); ++p)
+            colours[p] = relighter(p);
+        for (std::size_t first = 0; first < lamps.size(); first += LocalRelighter::max_shares) {
+            const std::size_t count = std::min(lamps.size() - first, LocalRelighter::max_shares);
+            const LocalRelighter local(sector, lamps.subspan(first, count));
+            for (std::size_t p = 0; p < out.size(); ++p)
+                local.add_to(colours[p], p);
+        }
         for (std::size_t p = 0; p < out.size(); ++p) {
-            BasisColours colours = relighter(p);
-            local.add_to(colours, p);
-            colours = clamped(colours);
-            largest = std::max(largest, largest_of(colours));
-            out[p] = packed(colours);
+            const BasisColours visible = clamped(colours[p]);
+            largest = std::max(largest, largest_of(visible));
+            out[p] = packed(visible);
         }
     }
     slots_[sector.slot][index] = {sector.load, ++clock_, largest};

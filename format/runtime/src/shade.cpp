@@ -1,11 +1,32 @@
-// From the colours of probes to the light at a normal.
+// The colours of probes: packed, and as light at a normal.
 #include <drtv/relight.h>
 
+#include "half.h"
 #include "vector.h"
 
 #include <algorithm>
 
 namespace drtv {
+
+PackedColours packed(const BasisColours& colours) {
+    PackedColours result;
+    for (std::size_t k = 0; k < channel_count; ++k) {
+        for (std::size_t c = 0; c < channel_count; ++c)
+            result[k][c] = half_of(colours[k][c]);
+        result[k][3] = half_of(colours[3][k]);
+    }
+    return result;
+}
+
+BasisColours unpacked(const PackedColours& colours) {
+    BasisColours result;
+    for (std::size_t k = 0; k < channel_count; ++k) {
+        for (std::size_t c = 0; c < channel_count; ++c)
+            result[k][c] = float_of_half(colours[k][c]);
+        result[3][k] = float_of_half(colours[k][3]);
+    }
+    return result;
+}
 
 void add_static_irradiance(BasisColours& colours, const StaticIrradiance& light, const Float3& factor) {
     const float scale = scale_of_exponent(light.exponent);

@@ -17,6 +17,9 @@ struct TexelBox {
     Int3 low{};
     Int3 high{};
 
+    [[nodiscard]] std::int64_t texels() const {
+        return std::int64_t{high[0] - low[0]} * (high[1] - low[1]) * (high[2] - low[2]);
+    }
     [[nodiscard]] bool empty() const { return low[0] >= high[0] || low[1] >= high[1] || low[2] >= high[2]; }
 };
 

@@ -34,6 +34,13 @@ struct Work {
     std::size_t count = 0;
     bool all = false;
 
+    [[nodiscard]] std::int64_t texels() const {
+        std::int64_t sum = 0;
+        for (std::size_t n = 0; n < count; ++n)
+            sum += boxes[n].texels();
+        return sum;
+    }
+
     void add(const TexelBox& box) {
         if (box.empty())
             return;
@@ -192,7 +199,7 @@ void update_volume(Volume::State& state,
     add_changes(state, relit, work);
     encode_probes(state, relit);
     state.dirty_count = 0;
-    if (work.all) {
+    if (work.all || 2 * work.texels() > state.whole().texels()) {
         work.count = 0;
         work.all = false;
         work.add(state.whole());

@@ -40,10 +40,11 @@ struct AmbientParts {
 };
 
 struct Ambient {
+    // In an interior alone, `inside`; where its probe has a share and the rest is the fallback, `fading`.
     PlaceStatus status = PlaceStatus::sector_missing;
     ProbeShare probe;  // that the grid names for the place; sector is null where it names none
     InteriorShare interior;
-    BasisColours colours{};  // E/pi; of each probe nothing below 0
+    BasisColours colours{};  // E/pi; each probe's, lamps included, are clamped at 0 before they are blended
     AmbientParts parts;      // at the normal
     Float3 colour{};         // E/pi at the normal, nothing below 0
 };

@@ -60,7 +60,7 @@ using SkyRadiance = Float3 (*)(const Float3& w, void* user);
 
 struct Sun {
     Float3 irradiance{};           // on a surface that faces it
-    Float3 direction{0, 0, 1.0f};  // towards it; below the horizon, or not finite: no sun
+    Float3 direction{0, 0, 1.0f};  // towards it; at the horizon, below, or not finite: no sun
 };
 // As the mode has it: `literal` takes E Y(w); `accurate` fits the upper hemisphere, so that the sun's bounce
 // from flat ground is right at every height of the sun.

@@ -49,9 +49,10 @@ inline constexpr std::size_t max_shares_per_light = 8;
 // Shares made ready for the probes of one sector.
 class LocalRelighter {
   public:
-    static constexpr std::size_t max_shares = 512;  // that reach one sector
+    static constexpr std::size_t max_shares = 512;
 
-    // Shares farther than a sector away, and those behind the first max_shares of the rest, bring nothing.
+    // Those of probes farther than a sector away bring nothing. REQUIRES: at most max_shares; of more, take
+    // several.
     LocalRelighter(const LoadedSector& sector, std::span<const LightShare> shares);
 
     // Adds what probe p gets. A lamp beside its source shines into fewer faces from near: each pair takes the

@@ -70,7 +70,7 @@ class ProbeRelighter {
 // Where a colour leaves relighting for shading or a texture, nothing is below 0. What is not a number is 0.
 [[nodiscard]] BasisColours clamped(const BasisColours& colours);
 
-// What each basis direction sees of an open sky: visibility 1, nothing bounced. Not clamped.
+// What each basis direction sees of an open sky: visibility (1, 1, 1, 0), nothing bounced. Not clamped.
 [[nodiscard]] BasisColours open_sky(const SceneLight& light);
 
 // Adds the light of the map's own lights to colours. `factor` scales the channels.
