@@ -15,12 +15,13 @@
 
 namespace drtv::bake {
 
-using BasisColours = std::array<std::array<float, basis_count>, channel_count>;  // [channel][basis direction]
+using BasisIrradiance =
+    std::array<std::array<float, basis_count>, channel_count>;  // [channel][basis direction]
 
 // Of one set of lights (lights.h) to one probe.
 struct StaticLightOfProbe {
     std::size_t set = 0;
-    BasisColours irradiance{};  // E/pi, W/m2, direct and bounced
+    BasisIrradiance irradiance{};  // E/pi, W/m2, direct and bounced
     float error = 0;  // standard error over the mean of these, at most 1; 1 of light that no path found
 };
 
@@ -28,7 +29,7 @@ struct ProbeLight {
     // [channel][basis direction][SH coefficient]: E/pi from a sky of radiance Y_i by up to N bounces.
     std::array<std::array<std::array<float, sh_count>, basis_count>, channel_count> transfer{};
     std::array<float, basis_count> sky_visibility{};  // 1 under an open sky; [3] = 0
-    BasisColours static_irradiance{};                 // E/pi, W/m2, direct and bounced, of lights in no group
+    BasisIrradiance static_irradiance{};              // E/pi, W/m2, direct and bounced, of lights in no group
     std::vector<StaticLightOfProbe> groups;           // of light groups within reach, by set
     std::uint32_t paths = 0;                          // shot from the probe
     float error = 0;                                  // reached, as IntegrationSettings::error has it

@@ -13,7 +13,7 @@
 namespace drtv::bake {
 namespace {
 
-StaticIrradiance encode_static(const BasisColours& irradiance) {
+StaticIrradiance encode_static(const BasisIrradiance& irradiance) {
     float largest = 0;
     for (const auto& channel : irradiance)
         largest = std::max(largest, *std::ranges::max_element(channel));

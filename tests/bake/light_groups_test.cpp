@@ -141,7 +141,7 @@ TEST(LightGroups, ErrorOfLightThatNoPathFoundIsOne) {
                 .light_group = "outside"});
     const auto world = open_world(b);
     const bake::ProbeLight inside = light_at(*world, {-2, 0, 1}, 256);
-    EXPECT_EQ(inside.groups.at(0).irradiance, bake::BasisColours{});
+    EXPECT_EQ(inside.groups.at(0).irradiance, bake::BasisIrradiance{});
     EXPECT_EQ(inside.groups.at(0).error, 1);
     EXPECT_EQ(inside.static_error, 0) << "there is no lamp without a group";
     EXPECT_LT(light_at(*world, {18, 19, 1}, 256).groups.at(0).error, 1);

@@ -242,7 +242,7 @@ TEST(StaticLight, MapWithoutLightsHasNone) {
     b.place(ground(50), "", b.add_material({}));
     const auto world = open_world(b);
     const bake::ProbeLight light = light_at(*world, {1, 1, 1}, 256);
-    EXPECT_EQ(light.static_irradiance, bake::BasisColours{});
+    EXPECT_EQ(light.static_irradiance, bake::BasisIrradiance{});
     EXPECT_EQ(light.shadow_rays, 0u);
 }
 
@@ -300,7 +300,7 @@ TEST(StaticLight, DoubleSidedWallsAreAsBrightAsOnesThatLookInwards) {
         b.place(inward ? room(low, high) : box(low, high), "", walls);
         add_light(b, point_light(300), {32, 32, 3});
         const auto world = open_world(b);
-        std::vector<bake::BasisColours> light;
+        std::vector<bake::BasisIrradiance> light;
         for (const float dx : {-2.0f, 0.0f, 2.0f}) {
             for (const float dy : {-2.0f, 0.0f, 2.0f})
                 light.push_back(light_at(*world, {32 + dx, 32 + dy, 1.5f}, 4096).static_irradiance);

@@ -1,5 +1,10 @@
 // Conventions shared by baker and game: axes, basis, spherical harmonics, fixed point. The normative text is
-// format/SPEC.md, section 2; every constant here stands there too.
+// SPEC.md, section 2; every constant here stands there too. "The talk", here and in other headers: M.
+// Gilabert and N. Stefanov, "Deferred Radiance Transfer Volumes: Global Illumination in Far Cry 3", GDC 2012.
+//
+// Everything is constexpr, pure and thread-safe.
+//
+//     float seen = drtv::decode_fixed(codes[b], drtv::sky_visibility_scale);   // 0 to 1
 #pragma once
 
 #include <algorithm>
@@ -14,7 +19,7 @@ using Float3 = std::array<float, 3>;
 using Float4 = std::array<float, 4>;
 using Double3 = std::array<double, 3>;  // places in the world, in metres
 
-// World: right-handed, z up, metres. A sector is a square of this side, all heights (s24).
+// World: right-handed, z up, metres. A sector is a square of this side, all heights (slide 24 of the talk).
 inline constexpr int sector_size_m = 64;
 
 // Positions are whole multiples of 2^-10 m, so that 16 bits span one sector's side exactly.
@@ -25,7 +30,7 @@ inline constexpr std::size_t basis_count = 4;
 inline constexpr std::size_t sh_count = 4;
 inline constexpr std::size_t channel_count = 3;
 
-// The transfer basis (s40): three directions around up, one straight down.
+// The transfer basis (slide 40 of the talk): three directions around up, one straight down.
 inline constexpr std::array<Float3, basis_count> transfer_basis = {{{-0.408248f, -0.707107f, 0.577350f},
                                                                     {-0.408248f, 0.707107f, 0.577350f},
                                                                     {0.816497f, 0.0f, 0.577350f},
@@ -60,7 +65,8 @@ inline constexpr float fixed_point_max = 32767.0f;
 inline constexpr float transfer_scale = 0.5f;
 inline constexpr float sky_visibility_scale = 1.0f;
 
-// Bounds of any passive scene's transfer (DESIGN section 2): 1/(2 sqrt pi) for i = 0 and sqrt(3/(4 pi)) else.
+// Bounds of any passive scene's transfer (SPEC.md, section 3): 1/(2 sqrt pi) for i = 0 and sqrt(3/(4 pi))
+// else.
 inline constexpr float transfer_bound_y0 = 0.2821f;
 inline constexpr float transfer_bound_y1 = 0.4887f;
 

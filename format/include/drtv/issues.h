@@ -1,4 +1,9 @@
-// The table of all that a validator can find. A code never changes its meaning, and none is used again:
+// The table of all that a validator can find: constants, thread-safe.
+//
+//     const drtv::Issue* issue = drtv::issue_of_code("CHECKSUM");
+//     if (issue != nullptr && issue->severity == drtv::Severity::error) puts("a file with it is invalid");
+//
+//  A code never changes its meaning, and none is used again:
 // `STRUCTURE` of drtv 0.1.0 is retired, in its place stand the codes of the group structure. format/ISSUES.md
 // is made from this table (`drtv issues`).
 #pragma once
@@ -31,12 +36,12 @@ struct Issue {
     std::string_view meaning;
 };
 
-struct Error : Issue {
-    constexpr Error(std::string_view code_, IssueGroup group_, std::string_view meaning_)
+struct ErrorIssue : Issue {
+    constexpr ErrorIssue(std::string_view code_, IssueGroup group_, std::string_view meaning_)
         : Issue{code_, Severity::error, group_, meaning_} {}
 };
-struct Warning : Issue {
-    constexpr Warning(std::string_view code_, IssueGroup group_, std::string_view meaning_)
+struct WarningIssue : Issue {
+    constexpr WarningIssue(std::string_view code_, IssueGroup group_, std::string_view meaning_)
         : Issue{code_, Severity::warning, group_, meaning_} {}
 };
 
@@ -44,126 +49,132 @@ namespace issue {
 
 using enum IssueGroup;
 
-inline constexpr Error not_a_sector_file("NOT_A_SECTOR_FILE",
-                                         structure,
-                                         "the file is too short, or does not start with DRTV");
-inline constexpr Error unsupported_version("UNSUPPORTED_VERSION",
+inline constexpr ErrorIssue not_a_sector_file("NOT_A_SECTOR_FILE",
+                                              structure,
+                                              "the file is too short, or does not start with DRTV");
+inline constexpr ErrorIssue unsupported_version(
+    "UNSUPPORTED_VERSION", structure, "the file, or a section that it must have, is of another version");
+inline constexpr ErrorIssue truncated("TRUNCATED", structure, "the file is shorter than its header says");
+inline constexpr ErrorIssue trailing_bytes("TRAILING_BYTES",
                                            structure,
-                                           "the file, or a section that it must have, is of another version");
-inline constexpr Error truncated("TRUNCATED", structure, "the file is shorter than its header says");
-inline constexpr Error trailing_bytes("TRAILING_BYTES", structure, "the file is longer than its header says");
-inline constexpr Error header("HEADER", structure, "a field of the header breaks its rule");
-inline constexpr Error table("TABLE", structure, "an entry of the table of sections breaks its rule");
-inline constexpr Error checksum("CHECKSUM",
-                                structure,
-                                "a stored checksum does not match the bytes it covers");
-inline constexpr Error missing_section("MISSING_SECTION",
-                                       structure,
-                                       "a section that every file has is not there");
-inline constexpr Error section("SECTION",
-                               structure,
-                               "the content of a section breaks a rule of its structure");
-inline constexpr Warning unknown_section(
+                                           "the file is longer than its header says");
+inline constexpr ErrorIssue header("HEADER", structure, "a field of the header breaks its rule");
+inline constexpr ErrorIssue table("TABLE", structure, "an entry of the table of sections breaks its rule");
+inline constexpr ErrorIssue checksum("CHECKSUM",
+                                     structure,
+                                     "a stored checksum does not match the bytes it covers");
+inline constexpr ErrorIssue missing_section("MISSING_SECTION",
+                                            structure,
+                                            "a section that every file has is not there");
+inline constexpr ErrorIssue section("SECTION",
+                                    structure,
+                                    "the content of a section breaks a rule of its structure");
+inline constexpr WarningIssue unknown_section(
     "UNKNOWN_SECTION",
     structure,
     "a section is of a kind or version that this validator does not know; it was not looked into");
 
-inline constexpr Error fixed_point_reserved("FIXED_POINT_RESERVED",
-                                            quantisation,
-                                            "a coefficient has the reserved code -32768");
-inline constexpr Warning fixed_point_saturated(
+inline constexpr ErrorIssue fixed_point_reserved("FIXED_POINT_RESERVED",
+                                                 quantisation,
+                                                 "a coefficient has the reserved code -32768");
+inline constexpr WarningIssue fixed_point_saturated(
     "FIXED_POINT_SATURATED",
     quantisation,
     "a coefficient has the largest code under the largest exponent: its value may have been larger");
-inline constexpr Error static_exponent("STATIC_EXPONENT",
-                                       quantisation,
-                                       "the exponent of a static irradiance lies outside -64 to 64");
-inline constexpr Error local_exponent(
+inline constexpr ErrorIssue static_exponent("STATIC_EXPONENT",
+                                            quantisation,
+                                            "the exponent of a static irradiance lies outside -64 to 64");
+inline constexpr ErrorIssue local_exponent(
     "LOCAL_EXPONENT",
     quantisation,
     "the exponents of a pair's receiver and source add up to less than -126 or more than 63");
 
-inline constexpr Error sky_visibility_range("SKY_VISIBILITY_RANGE",
-                                            physics,
-                                            "a sky visibility lies outside [0, 1]");
-inline constexpr Error sky_visibility_down("SKY_VISIBILITY_DOWN",
+inline constexpr ErrorIssue sky_visibility_range("SKY_VISIBILITY_RANGE",
+                                                 physics,
+                                                 "a sky visibility lies outside [0, 1]");
+inline constexpr ErrorIssue sky_visibility_down("SKY_VISIBILITY_DOWN",
+                                                physics,
+                                                "the sky visibility of the downward direction is not 0");
+inline constexpr ErrorIssue transfer_range("TRANSFER_RANGE",
                                            physics,
-                                           "the sky visibility of the downward direction is not 0");
-inline constexpr Error transfer_range("TRANSFER_RANGE",
-                                      physics,
-                                      "a transfer coefficient is larger than a passive scene allows");
-inline constexpr Error transfer_sign(
+                                           "a transfer coefficient is larger than a passive scene allows");
+inline constexpr ErrorIssue transfer_sign(
     "TRANSFER_SIGN",
     physics,
     "a transfer coefficient of Y0 or Y2 is negative: more light from above would give less");
-inline constexpr Error transfer_band(
+inline constexpr ErrorIssue transfer_band(
     "TRANSFER_BAND",
     physics,
     "a transfer coefficient is more than sqrt(3) times that of Y0: light would be negative");
-inline constexpr Error energy("ENERGY", physics, "under a sky of radiance 1 a probe sees more than 1");
-inline constexpr Error static_irradiance_range("STATIC_IRRADIANCE_RANGE",
-                                               physics,
-                                               "a static irradiance is negative");
-inline constexpr Error local_transfer_range(
+inline constexpr ErrorIssue energy("ENERGY", physics, "under a sky of radiance 1 a probe sees more than 1");
+inline constexpr ErrorIssue static_irradiance_range("STATIC_IRRADIANCE_RANGE",
+                                                    physics,
+                                                    "a static irradiance is negative");
+inline constexpr ErrorIssue local_transfer_range(
     "LOCAL_TRANSFER_RANGE",
     physics,
     "a local transfer coefficient is larger than light that is nowhere negative allows");
-inline constexpr Warning local_reciprocity("LOCAL_RECIPROCITY",
-                                           physics,
-                                           "local transfer there and back has little in common: rows may "
-                                           "belong to other probes, or most probes touch a wall");
-inline constexpr Error interior_open("INTERIOR_OPEN", physics, "the mesh of an interior is not closed");
-inline constexpr Warning interior_inside_out(
+inline constexpr WarningIssue local_reciprocity(
+    "LOCAL_RECIPROCITY",
+    physics,
+    "local transfer there and back has little in common: rows may "
+    "belong to other probes, or most probes touch a wall");
+inline constexpr ErrorIssue interior_open("INTERIOR_OPEN", physics, "the mesh of an interior is not closed");
+inline constexpr WarningIssue interior_inside_out(
     "INTERIOR_INSIDE_OUT",
     physics,
     "the mesh of an interior encloses no volume, or its triangles face inwards");
-inline constexpr Warning interior_probe("INTERIOR_PROBE",
-                                        physics,
-                                        "the probe of an interior stands outside of its bounds");
-inline constexpr Error settings_range("SETTINGS_RANGE", physics, "a recorded setting lies outside its range");
-inline constexpr Error convergence_range("CONVERGENCE_RANGE",
-                                         physics,
-                                         "a recorded error or number of paths is negative or out of order");
+inline constexpr WarningIssue interior_probe("INTERIOR_PROBE",
+                                             physics,
+                                             "the probe of an interior stands outside of its bounds");
+inline constexpr ErrorIssue settings_range("SETTINGS_RANGE",
+                                           physics,
+                                           "a recorded setting lies outside its range");
+inline constexpr ErrorIssue convergence_range(
+    "CONVERGENCE_RANGE", physics, "a recorded error or number of paths is negative or out of order");
 
-inline constexpr Error grid_reference("GRID_REFERENCE", index, "a grid cell names a probe that is not there");
-inline constexpr Error grid_no_probe("GRID_NO_PROBE",
-                                     index,
-                                     "a grid cell is empty although the sector has probes for it");
-inline constexpr Error duplicate_position("DUPLICATE_POSITION",
+inline constexpr ErrorIssue grid_reference("GRID_REFERENCE",
+                                           index,
+                                           "a grid cell names a probe that is not there");
+inline constexpr ErrorIssue grid_no_probe("GRID_NO_PROBE",
                                           index,
-                                          "two probes stand at the same position");
-inline constexpr Error local_source_count("LOCAL_SOURCE_COUNT",
-                                          index,
-                                          "a probe takes light from more than 128 local sources");
-inline constexpr Error local_source_duplicate("LOCAL_SOURCE_DUPLICATE",
-                                              index,
-                                              "two local sources are the same probe");
+                                          "a grid cell is empty although the sector has probes for it");
+inline constexpr ErrorIssue duplicate_position("DUPLICATE_POSITION",
+                                               index,
+                                               "two probes stand at the same position");
+inline constexpr ErrorIssue local_source_count("LOCAL_SOURCE_COUNT",
+                                               index,
+                                               "a probe takes light from more than 128 local sources");
+inline constexpr ErrorIssue local_source_duplicate("LOCAL_SOURCE_DUPLICATE",
+                                                   index,
+                                                   "two local sources are the same probe");
 
-inline constexpr Error light_group_name(
+inline constexpr ErrorIssue light_group_name(
     "LIGHT_GROUP_NAME",
     index,
     "the name of a light group is no UTF-8, or does not stand behind the name before it in order");
 
-inline constexpr Error neighbour_source(
+inline constexpr ErrorIssue neighbour_source(
     "NEIGHBOUR_SOURCE", borders, "a local source is a probe that the neighbouring sector does not have");
-inline constexpr Warning neighbour_sections(
+inline constexpr WarningIssue neighbour_sections(
     "NEIGHBOUR_SECTIONS",
     borders,
     "of two neighbouring sectors one has a section of light that the other has not");
-inline constexpr Warning neighbour_step("NEIGHBOUR_STEP",
-                                        borders,
-                                        "light changes across a border much more than inside the two "
-                                        "sectors, and than heights and sky visibility "
-                                        "on both sides explain: they were baked of different maps");
+inline constexpr WarningIssue neighbour_step("NEIGHBOUR_STEP",
+                                             borders,
+                                             "light changes across a border much more than inside the two "
+                                             "sectors, and than heights and sky visibility "
+                                             "on both sides explain: they were baked of different maps");
 
-inline constexpr Error set_duplicate("SET_DUPLICATE", set, "two files hold the same sector");
-inline constexpr Error set_settings("SET_SETTINGS",
-                                    set,
-                                    "the sector was baked with another settings key than most of the folder");
-inline constexpr Warning set_hole("SET_HOLE", set, "a sector is missing although sectors are all around it");
-inline constexpr Warning set_file_name("SET_FILE_NAME",
+inline constexpr ErrorIssue set_duplicate("SET_DUPLICATE", set, "two files hold the same sector");
+inline constexpr ErrorIssue set_settings(
+    "SET_SETTINGS", set, "the sector was baked with another settings key than most of the folder");
+inline constexpr WarningIssue set_hole("SET_HOLE",
                                        set,
-                                       "the file is named for another sector than it holds");
+                                       "a sector is missing although sectors are all around it");
+inline constexpr WarningIssue set_file_name("SET_FILE_NAME",
+                                            set,
+                                            "the file is named for another sector than it holds");
 
 }  // namespace issue
 

@@ -1,5 +1,12 @@
 // Reading a sector file from untrusted bytes. Never throws on bad input, never reads outside `bytes`,
 // allocates little more than twice what its sections say they hold: some kilobytes, 16 MiB a section at most.
+//
+// Pure functions, thread-safe. A file of 70 probes takes some 50 us, most of it for zstd where it is
+// compressed. Games open raw files where they lie, without a copy: drtv/view.h.
+//
+//     drtv::Sector sector;
+//     const drtv::ReadStatus status = drtv::read_sector(bytes, sector);
+//     if (!status.ok()) puts(status.message.c_str());          // what, where, value
 #pragma once
 
 #include <drtv/sector.h>

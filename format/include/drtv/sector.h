@@ -1,5 +1,10 @@
 // A sector in memory: the numbers of one sector file, still in their stored fixed-point form, so that reading
-// and writing lose nothing. Layout, units and rules: format/SPEC.md.
+// and writing lose nothing. Layout, units and rules: SPEC.md. Plain structs for tools; games use drtv/view.h.
+//
+//     for (const drtv::Probe& probe : sector.probes) {
+//         const drtv::Float3 at = drtv::position_m(sector, probe);
+//         const float up = drtv::decode_fixed(probe.sky_visibility[2], drtv::sky_visibility_scale);
+//     }
 #pragma once
 
 #include <drtv/conventions.h>
@@ -21,7 +26,7 @@ enum class ProbeKind : std::uint8_t { ground = 0, vegetation = 1, manual = 2 };
 
 // [channel r, g, b][basis direction][SH coefficient], scale 0.5: E/pi from a sky of radiance Y_i, by bounce.
 using TransferCodes = std::array<std::array<std::array<std::int16_t, sh_count>, basis_count>, channel_count>;
-// [basis direction], scale 1: open sky = 1; the last one is always 0 (s21).
+// [basis direction], scale 1: open sky = 1; the last one is always 0 (slide 21 of the talk).
 using VisibilityCodes = std::array<std::int16_t, basis_count>;
 
 struct Probe {
@@ -139,8 +144,8 @@ struct Convergence {
     bool operator==(const Convergence&) const = default;
 };
 
-// A closed mesh; what is inside uses one probe (s56). Vertex v stands at the world position, in units of
-// 2^-10 m, origin_units + vertices[v] * 2^shift.
+// A closed mesh; what is inside uses one probe (slide 56 of the talk). Vertex v stands at the world position,
+// in units of 2^-10 m, origin_units + vertices[v] * 2^shift.
 struct Interior {
     std::array<std::int32_t, 3> origin_units{};
     std::uint8_t shift = 0;  // at most max_interior_shift

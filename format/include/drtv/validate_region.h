@@ -1,5 +1,9 @@
 // What sectors of one region owe each other: they tile a map without holes, were baked alike, and fit at
-// their borders.
+// their borders. Pure and thread-safe; costs some microseconds per sector, its own file not counted.
+//
+//     std::vector<drtv::RegionSector> sectors;                  // read_region_sector of each file
+//     for (const drtv::RegionFinding& found : drtv::validate_region(sectors))
+//     puts(found.finding.message.c_str());
 #pragma once
 
 #include <drtv/read.h>
