@@ -2,7 +2,7 @@
 # Builds the fuzz targets (clang, libFuzzer, address and undefined-behaviour sanitizers) and runs each from its seeds and corpus.
 #   tests/fuzz/run.sh                        a minute each, two at a time; what tests/run.sh does
 #   tests/fuzz/run.sh --runs 10000000        so many executions each (hours for gltf, minutes for the rest)
-#   tests/fuzz/run.sh --seconds 600 gltf     ten minutes of one target: gltf, reader, validator or zstd
+#   tests/fuzz/run.sh --seconds 600 gltf     ten minutes of one target: gltf, reader, validator, runtime or zstd
 #   tests/fuzz/run.sh --update-corpus        afterwards keeps what found new ways, in tests/fuzz/corpus
 # A target that crashes, hangs or leaks fails the run; its input lies in build/fuzz/fuzz/found, and is a test case to be.
 set -euo pipefail
@@ -15,11 +15,11 @@ while [[ $# -gt 0 ]]; do
     --seconds) limit=-max_total_time=$2; shift 2 ;;
     --runs) limit=-runs=$2; shift 2 ;;
     --update-corpus) update=1; shift ;;
-    gltf | reader | validator | zstd) targets+=("$1"); shift ;;
+    gltf | reader | runtime | validator | zstd) targets+=("$1"); shift ;;
     *) echo "run.sh: unknown argument $1" >&2; exit 2 ;;
   esac
 done
-[[ ${#targets[@]} -gt 0 ]] || targets=(gltf reader validator zstd)
+[[ ${#targets[@]} -gt 0 ]] || targets=(gltf reader validator runtime zstd)
 
 cd "$source_dir"
 cmake --preset fuzz >/dev/null
@@ -29,7 +29,7 @@ rm -rf "$bin/seeds"
 "$bin/fuzz_seeds" "$bin/seeds"
 mkdir -p "$bin/found"
 
-declare -A options=([gltf]="-max_len=2500 -dict=$here/gltf.dict" [reader]=-max_len=16384 [validator]=-max_len=16384 [zstd]=-max_len=1024)
+declare -A options=([gltf]="-max_len=2500 -dict=$here/gltf.dict" [reader]=-max_len=16384 [runtime]=-max_len=16384 [validator]=-max_len=16384 [zstd]=-max_len=1024)
 # Pictures of many megapixels come and go: what the sanitizer holds back of them would be most of the time.
 export ASAN_OPTIONS=quarantine_size_mb=8:allocator_release_to_os_interval_ms=-1
 

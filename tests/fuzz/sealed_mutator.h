@@ -16,7 +16,8 @@ extern "C" inline std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::s
                                                       std::size_t max_size, unsigned int seed) {
     using namespace drtv::test;
     size = LLVMFuzzerMutate(data, size, max_size);
-    if (seed % 8 == 0 || size < at::table)
+    const bool is_sector = size >= at::table && std::memcmp(data, "DRTV", 4) == 0;
+    if (seed % 8 == 0 || !is_sector)
         return size;
     Edit edit(Bytes(data, data + size));
     if (seed % 8 < 5)

@@ -3,6 +3,7 @@
 #include "tests/format/sectors.h"
 #include "tests/map/specimen.h"
 
+#include <drtv/sky_tile.h>
 #include <drtv/write.h>
 
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -41,6 +43,30 @@ void write_sectors(const std::filesystem::path& folder) {
     }
 }
 
+void write_tiles(const std::filesystem::path& folder) {
+    std::vector<drtv::SkyTile> tiles(3);
+    for (std::size_t n = 0; n < tiles.size(); ++n) {
+        tiles[n].i = static_cast<std::int32_t>(n);
+        tiles[n].visibility.fill(static_cast<std::uint8_t>(100 * n));
+    }
+    write(folder / "tiles", drtv::write_tiles(tiles));
+}
+
+void write_days(const std::filesystem::path& folder) {
+    const std::string keys =
+        R"([{"time": "06:00", "colour": [1, 2, 3]}, {"time": "18:30", "colour": [5, 6, 7]}])";
+    const std::string sky = R"("zenith": )" + keys + R"(, "horizon": )" + keys + R"(, "sun": )" + keys;
+    for (const std::string& day :
+         {"{" + sky + R"(, "sun_path": {"latitude": 30, "declination": -10}})",
+          "{" + sky +
+              R"(, "sun_path": {"north": 5, "keys": [{"time": "1:00", "azimuth": 350, "elevation": 9}]},
+                                        "sun_side": [], "groups": {"neon": )" +
+              keys + "}}"}) {
+        const auto* bytes = reinterpret_cast<const std::uint8_t*>(day.data());
+        write(folder / std::to_string(day.size()), {bytes, day.size()});
+    }
+}
+
 // As fuzz_zstd reads them: index of the section, plain or filtered (of version 3), 24s of raw bytes more,
 // unused; then the stored bytes.
 void write_frames(const std::filesystem::path& folder) {
@@ -67,6 +93,9 @@ int main(int argc, char** argv) {
     write_gltf(folder / "gltf");
     write_sectors(folder / "reader");
     write_sectors(folder / "validator");
+    write_sectors(folder / "runtime");
+    write_tiles(folder / "runtime");
+    write_days(folder / "runtime");
     write_frames(folder / "zstd");
     return 0;
 }
