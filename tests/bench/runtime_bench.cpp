@@ -68,6 +68,12 @@ Sector town_sector(SectorId id) {
         test::random_sector_1_1(static_cast<std::uint32_t>(id.i * 31 + id.j + 900), probes_per_sector);
     sector.i = id.i;
     sector.j = id.j;
+    sector.grid.z_origin_units = 0;
+    sector.grid.cell_height_units = position_units_per_m;
+    // Each cell names another probe than those beside it, so that a lamp has eight shares.
+    for (std::size_t n = 0; n < grid_cell_count; ++n)
+        sector.grid.cells[n] =
+            static_cast<std::uint8_t>((n % 16 + 17 * (n / 16 % 16) + 31 * (n / 256)) % probes_per_sector);
     LocalTransfer local;
     for (int dj = -1; dj <= 1; ++dj) {
         for (int di = -1; di <= 1; ++di) {
@@ -116,7 +122,7 @@ int run(int rounds) {
     std::vector<LightShare> shares;
     for (int lamp = 0; lamp < 8; ++lamp) {
         std::array<LightShare, max_shares_per_light> split;
-        const PointLight light{{10.0 + 9 * lamp, 20.0 - 3 * lamp, 5}, {10, 10, 10}};
+        const PointLight light{{13.0 + 9 * lamp, 21.0 - 3 * lamp, 5.2}, {10, 10, 10}};
         const std::size_t found = split_light(*set, light, split);
         shares.insert(shares.end(), split.begin(), split.begin() + static_cast<std::ptrdiff_t>(found));
     }

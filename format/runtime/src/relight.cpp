@@ -74,7 +74,8 @@ ProbeRelighter::ProbeRelighter(const SectorView& sector, const SceneLight& light
     scale(bounce_, transfer_scale / fixed_point_max);
     scale(sky_direct_, sky_visibility_scale / fixed_point_max);
     const auto per_code = [](const Float3& factor) {
-        return Float3{factor[0] / fixed_point_max, factor[1] / fixed_point_max, factor[2] / fixed_point_max};
+        return Float4{
+            factor[0] / fixed_point_max, factor[1] / fixed_point_max, factor[2] / fixed_point_max, 0};
     };
     if (!sector.static_irradiance.empty() && light.static_colour != Float3{})
         irradiance_[irradiance_count_++] = {
@@ -127,61 +128,88 @@ struct ProbeRelighter::Kernels {
     }
 
 #if defined(DRTV_AVX2)
+    // Two directions side by side, b0 | b1 and b2 | b3, each as r, g, b: so they leave for the textures.
+    DRTV_AVX2 static __m256 both(__m128 v) {
+        return _mm256_insertf128_ps(_mm256_castps128_ps256(v), v, 1);
+    }
+    DRTV_AVX2 static __m256 floats_of(const std::int16_t* codes) {
+        return _mm256_cvtepi32_ps(
+            _mm256_cvtepi16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(codes))));
+    }
+    // Of x and y, (0 + 2, 1 + 3) each.
+    DRTV_AVX2 static __m256 halves_of(__m256 x, __m256 y) {
+        return _mm256_add_ps(_mm256_shuffle_ps(x, y, _MM_SHUFFLE(1, 0, 1, 0)),
+                             _mm256_shuffle_ps(x, y, _MM_SHUFFLE(3, 2, 3, 2)));
+    }
+    DRTV_AVX2 static void add_irradiance(const Irradiance& light, std::size_t p, __m256& low, __m256& high) {
+        const std::int16_t* codes = light.codes[p][0].data();
+        const __m128i red_green = _mm_loadu_si128(reinterpret_cast<const __m128i*>(codes));
+        const __m128i blue = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(codes + 8));
+        const __m128i pairs = _mm_unpacklo_epi16(red_green, _mm_srli_si128(red_green, 8));
+        const __m128i blues = _mm_unpacklo_epi16(blue, _mm_setzero_si128());
+        const __m256 first = _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_unpacklo_epi32(pairs, blues)));
+        const __m256 second = _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_unpackhi_epi32(pairs, blues)));
+        const __m128 scale = _mm_set1_ps(scale_of_exponent(light.exponents[p]));
+        const __m256 factor = both(_mm_mul_ps(scale, _mm_loadu_ps(light.factor.data())));
+        low = _mm256_add_ps(low, _mm256_mul_ps(first, factor));
+        high = _mm256_add_ps(high, _mm256_mul_ps(second, factor));
+    }
+
     DRTV_AVX2 static float pack_all_avx2(const ProbeRelighter& r, PackedColours* out) {
         const SectorView& sector = *r.sector_;
-        __m256 bounce01[channel_count];
-        __m256 bounce23[channel_count];
-        for (std::size_t c = 0; c < channel_count; ++c) {
-            const Float4& b = r.bounce_[c];
-            bounce01[c] = _mm256_set_ps(b[1], b[1], b[1], b[1], b[0], b[0], b[0], b[0]);
-            bounce23[c] = _mm256_set_ps(b[3], b[3], b[3], b[3], b[2], b[2], b[2], b[2]);
-        }
-        __m128 largest = _mm_setzero_ps();
+        __m256 bounce[channel_count];
+        for (std::size_t c = 0; c < channel_count; ++c)
+            bounce[c] = both(_mm_loadu_ps(r.bounce_[c].data()));
+        const auto direct = [&](std::size_t b) DRTV_AVX2 {
+            return _mm_set_ps(0, r.sky_direct_[2][b], r.sky_direct_[1][b], r.sky_direct_[0][b]);
+        };
+        const __m256 direct_low = _mm256_insertf128_ps(_mm256_castps128_ps256(direct(0)), direct(1), 1);
+        const __m256 direct_high = _mm256_insertf128_ps(_mm256_castps128_ps256(direct(2)), direct(3), 1);
+        const __m256i first_two = _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1);
+        const __m256i last_two = _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3);
+        const __m256i downward = _mm256_setr_epi32(4, 4, 4, 4, 5, 5, 5, 5);  // r and g of b3
+        const __m256 none = _mm256_setzero_ps();
+        const __m256 most = _mm256_set1_ps(half_largest);
+        __m256 largest = none;
         for (std::size_t p = 0; p < sector.probe_count; ++p) {
-            const auto* transfer = reinterpret_cast<const __m128i*>(sector.transfer[p][0][0].data());
-            const auto codes_of = [](const std::int16_t* codes) DRTV_AVX2 {
-                const __m128i four = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(codes));
-                return _mm_cvtepi32_ps(_mm_cvtepi16_epi32(four));
-            };
-            const __m128 visibility = codes_of(sector.sky_visibility[p].data());
-            __m128 channels[channel_count];
+            const std::int16_t* codes = sector.transfer[p][0][0].data();
+            __m256 low[channel_count];
+            __m256 high[channel_count];
             for (std::size_t c = 0; c < channel_count; ++c) {
-                const __m128i rows01 = _mm_loadu_si128(transfer + 2 * c);
-                const __m128i rows23 = _mm_loadu_si128(transfer + 2 * c + 1);
-                const __m128i even = _mm_unpacklo_epi16(rows01, rows23);
-                const __m128i odd = _mm_unpackhi_epi16(rows01, rows23);
-                const __m256 columns01 =
-                    _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_unpacklo_epi16(even, odd)));
-                const __m256 columns23 =
-                    _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_unpackhi_epi16(even, odd)));
-                const __m256 sums = _mm256_add_ps(_mm256_mul_ps(columns01, bounce01[c]),
-                                                  _mm256_mul_ps(columns23, bounce23[c]));
-                const __m128 bounced =
-                    _mm_add_ps(_mm256_castps256_ps128(sums), _mm256_extractf128_ps(sums, 1));
-                const __m128 direct = _mm_mul_ps(visibility, _mm_loadu_ps(r.sky_direct_[c].data()));
-                channels[c] = _mm_add_ps(bounced, direct);
+                low[c] = _mm256_mul_ps(floats_of(codes + 16 * c), bounce[c]);
+                high[c] = _mm256_mul_ps(floats_of(codes + 16 * c + 8), bounce[c]);
             }
-            for (std::size_t n = 0; n < r.irradiance_count_; ++n) {
-                const Irradiance& light = r.irradiance_[n];
-                const float scale = scale_of_exponent(light.exponents[p]);
-                for (std::size_t c = 0; c < channel_count; ++c) {
-                    const __m128 factor = _mm_set1_ps(scale * light.factor[c]);
-                    channels[c] =
-                        _mm_add_ps(channels[c], _mm_mul_ps(codes_of(light.codes[p][c].data()), factor));
-                }
-            }
-            const __m128 high = _mm_unpackhi_ps(channels[0], channels[1]);
-            __m128 last = _mm_shuffle_ps(high, channels[2], _MM_SHUFFLE(3, 3, 3, 2));
-            _MM_TRANSPOSE4_PS(channels[0], channels[1], channels[2], last);
-            for (std::size_t k = 0; k < channel_count; ++k) {
-                largest = _mm_max_ps(channels[k], largest);
-                const __m128 positive = _mm_max_ps(channels[k], _mm_setzero_ps());
-                const __m128 bounded = _mm_min_ps(positive, _mm_set1_ps(half_largest));
-                _mm_storel_epi64(reinterpret_cast<__m128i*>(out[p][k].data()),
-                                 _mm_cvtps_ph(bounded, _MM_FROUND_TO_NEAREST_INT));
-            }
+            const __m256 red_green_low = halves_of(low[0], low[1]);
+            const __m256 red_green_high = halves_of(high[0], high[1]);
+            const __m256 blue = halves_of(low[2], high[2]);
+            __m256 lower = _mm256_add_ps(_mm256_shuffle_ps(red_green_low, blue, _MM_SHUFFLE(2, 0, 2, 0)),
+                                         _mm256_shuffle_ps(red_green_low, blue, _MM_SHUFFLE(3, 1, 3, 1)));
+            __m256 upper = _mm256_add_ps(_mm256_shuffle_ps(red_green_high, blue, _MM_SHUFFLE(2, 2, 2, 0)),
+                                         _mm256_shuffle_ps(red_green_high, blue, _MM_SHUFFLE(3, 3, 3, 1)));
+            const __m128i seen =
+                _mm_loadl_epi64(reinterpret_cast<const __m128i*>(sector.sky_visibility[p].data()));
+            const __m256 visibility = _mm256_castps128_ps256(_mm_cvtepi32_ps(_mm_cvtepi16_epi32(seen)));
+            lower = _mm256_add_ps(lower,
+                                  _mm256_mul_ps(_mm256_permutevar8x32_ps(visibility, first_two), direct_low));
+            upper = _mm256_add_ps(upper,
+                                  _mm256_mul_ps(_mm256_permutevar8x32_ps(visibility, last_two), direct_high));
+            for (std::size_t n = 0; n < r.irradiance_count_; ++n)
+                add_irradiance(r.irradiance_[n], p, lower, upper);
+
+            const __m256 rows = _mm256_blend_ps(lower, _mm256_permutevar8x32_ps(upper, downward), 0x88);
+            const __m256 down = _mm256_permute2f128_ps(upper, upper, 0x11);
+            const __m256 row = _mm256_blend_ps(upper, _mm256_permute_ps(down, _MM_SHUFFLE(2, 2, 2, 2)), 0x08);
+            const __m256 rows_seen = _mm256_max_ps(rows, none);
+            const __m256 row_seen = _mm256_max_ps(row, none);
+            largest = _mm256_max_ps(rows_seen, largest);
+            largest = _mm256_max_ps(_mm256_blend_ps(row_seen, none, 0xF0), largest);
+            auto* to = reinterpret_cast<__m128i*>(out[p][0].data());
+            _mm_storeu_si128(to, _mm256_cvtps_ph(_mm256_min_ps(rows_seen, most), _MM_FROUND_TO_NEAREST_INT));
+            const __m128 last = _mm256_castps256_ps128(_mm256_min_ps(row_seen, most));
+            _mm_storel_epi64(to + 1, _mm_cvtps_ph(last, _MM_FROUND_TO_NEAREST_INT));
         }
-        return largest_of({largest});
+        return std::max(largest_of({_mm256_castps256_ps128(largest)}),
+                        largest_of({_mm256_extractf128_ps(largest, 1)}));
     }
 #endif
 };

@@ -49,7 +49,7 @@ class ProbeRelighter {
     struct Irradiance {
         const LightCodes* codes;
         const std::int8_t* exponents;
-        Float3 factor;
+        Float4 factor;  // by channel
     };
     struct Kernels;
 
