@@ -18,27 +18,18 @@ int run_tiles(const TilesRequest& request) {
     std::vector<SkyTile> tiles;
     std::map<std::pair<std::int32_t, std::int32_t>, std::string> known;
     for (const std::string& file : *files) {
-        const FileRead read = read_file(file);
-        if (!read.ok()) {
-            complain(read.error);
-            return exit_unreadable;
-        }
-        std::vector<std::uint8_t> raw;
-        SectorView sector;
-        ReadStatus status = unpack_sector(read.bytes, raw);
-        if (status.ok())
-            status = open_sector(raw, sector);
-        if (!status.ok()) {
-            complain(file + ": " + status.message);
-            return exit_invalid;
-        }
-        const auto [entry, added] = known.try_emplace({sector.i, sector.j}, file);
+        int exit_code = exit_valid;
+        const auto sector = load_raw_sector(file, exit_code);
+        if (!sector)
+            return exit_code;
+        const SectorView& view = sector->view;
+        const auto [entry, added] = known.try_emplace({view.i, view.j}, file);
         if (!added) {
-            complain(entry->second + " and " + file + " hold the same sector (" + std::to_string(sector.i) +
-                     ", " + std::to_string(sector.j) + ")");
+            complain(entry->second + " and " + file + " hold the same sector (" + std::to_string(view.i) +
+                     ", " + std::to_string(view.j) + ")");
             return exit_invalid;
         }
-        tiles.push_back(sky_tile_of(sector));
+        tiles.push_back(sky_tile_of(view));
     }
     const std::vector<std::uint8_t> bytes = write_tiles(tiles);
     if (const std::string error = write_file(request.out, bytes); !error.empty()) {

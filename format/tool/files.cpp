@@ -164,6 +164,25 @@ std::optional<FilePaths> sector_files(const std::string& path) {
     return files;
 }
 
+std::optional<RawSector> load_raw_sector(const std::string& path, int& exit_code) {
+    const FileRead file = read_file(path);
+    if (!file.ok()) {
+        complain(file.error);
+        exit_code = exit_unreadable;
+        return std::nullopt;
+    }
+    RawSector sector;
+    ReadStatus status = unpack_sector(file.bytes, sector.bytes);
+    if (status.ok())
+        status = open_sector(sector.bytes, sector.view);
+    if (!status.ok()) {
+        complain(path + ": " + status.message);
+        exit_code = exit_invalid;
+        return std::nullopt;
+    }
+    return sector;
+}
+
 std::optional<Sector> load_sector(const std::string& path, int& exit_code, FileBytes* bytes) {
     FileRead file = read_file(path);
     if (!file.ok()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <drtv/sector.h>
+#include <drtv/view.h>
 
 #include <cstdint>
 #include <optional>
@@ -46,6 +47,14 @@ struct TextRead {
 // `path` itself when it is a file; all regular files `*.drtv` below it, sorted, when it is a folder. Nothing
 // where there is none: then the reason is told.
 [[nodiscard]] std::optional<FilePaths> sector_files(const std::string& path);
+
+// A sector as a game has it: raw bytes, and the view of them.
+struct RawSector {
+    FileBytes bytes;
+    SectorView view;  // of the bytes; stays right when this is moved
+};
+// As load_sector below.
+[[nodiscard]] std::optional<RawSector> load_raw_sector(const std::string& path, int& exit_code);
 
 // The sector in a file. Nothing where it cannot be read: then the reason is told and `exit_code` is set.
 // `bytes`, where given, gets the file.

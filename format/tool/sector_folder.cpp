@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -44,20 +45,11 @@ int SectorFolder::load(const std::string& path, const std::vector<Double3>& plac
         // A file that does not even say its sector may be one that is wanted.
         if (place && !sectors.contains(*place))
             continue;
-        FileRead read = read_file(file);
-        if (!read.ok()) {
-            complain(read.error);
-            return exit_unreadable;
-        }
-        std::vector<std::uint8_t> raw;
-        SectorView view;
-        ReadStatus status = unpack_sector(read.bytes, raw);
-        if (status.ok())
-            status = open_sector(raw, view);
-        if (!status.ok()) {
-            complain(file + ": " + status.message);
-            return exit_invalid;
-        }
+        int exit_code = exit_valid;
+        std::optional<RawSector> sector = load_raw_sector(file, exit_code);
+        if (!sector)
+            return exit_code;
+        const SectorView& view = sector->view;
         const auto [entry, added] = named.try_emplace({view.i, view.j}, file);
         if (!added) {
             complain(entry->second + " and " + file + " hold the same sector");
@@ -67,7 +59,7 @@ int SectorFolder::load(const std::string& path, const std::vector<Double3>& plac
         ++limits.tiles;
         limits.probes += static_cast<std::uint32_t>(view.probe_count);
         limits.interiors += static_cast<std::uint32_t>(view.interiors.size());
-        files_.push_back(std::move(raw));
+        files_.push_back(std::move(sector->bytes));
     }
     memory_.resize(SectorSet::memory_bytes(limits));
     set_ = std::make_unique<SectorSet>(memory_, limits);

@@ -305,6 +305,50 @@ TEST(SplitLight, InsideAnInteriorItGoesToItsProbeAloneAndNoneOutsideDoes) {
     EXPECT_NEAR(sum, 1, 1e-6);
 }
 
+// Two rooms, west and east of a wall in the middle of the sector: pairs within each, none between.
+Sector two_rooms() {
+    Sector sector = connected_sector({0, 0}, 0.1f);
+    LocalTransfer apart = *sector.local_transfer;
+    apart.pairs.clear();
+    for (LocalReceiver& receiver : apart.receivers)
+        receiver = {};
+    const LightCodes codes = sector.local_transfer->pairs[0];
+    for (std::size_t p = 0; p < 16; ++p) {
+        std::vector<std::size_t> room;
+        for (std::size_t s = 0; s < 16; ++s) {
+            if (s % 4 / 2 == p % 4 / 2)
+                room.push_back(s);
+        }
+        test::add_pairs(apart, p, room, codes);
+    }
+    sector.local_transfer = apart;
+    return sector;
+}
+
+// The wall stands at x = 32, where cells of both sides have equal shares.
+TEST(SplitLight, KeepsToItsSideOfAWall) {
+    OwnedSet set, open;
+    set.add(two_rooms());
+    open.add(connected_sector({0, 0}, 0.1f));
+    const auto across = [](OwnedSet& sectors, double x) {
+        std::array<LightShare, 8> shares;
+        const std::size_t count = split_light(*sectors, {{x, 32, 2}, {1, 1, 1}}, shares);
+        float east = 0;
+        for (std::size_t n = 0; n < count; ++n)
+            east += shares[n].probe % 4 >= 2 ? shares[n].intensity[0] : 0.0f;
+        return east;
+    };
+    EXPECT_NEAR(across(open, 31.5), 0.375, 0.01) << "without a wall";
+    EXPECT_LT(across(set, 31.5), 0.02);
+    EXPECT_GT(across(set, 32.5), 0.98);
+    EXPECT_NEAR(across(set, 32), 0.5, 1e-3);
+    float before = across(set, 30);
+    for (double x = 30; x < 34; x += 0.01) {
+        EXPECT_LT(std::abs(across(set, x) - before), 0.03f) << x;
+        before = across(set, x);
+    }
+}
+
 // At its source a lamp brings I R Y(b); farther off than its source it counts less, by the squared distances.
 TEST(LocalRelighter, IsTheSumOverPairsTimesTheFactorOfNearness) {
     OwnedSet set;

@@ -298,8 +298,33 @@ def split_lamp(sectors, lamp):
     for named, share in sectors.trilinear(lamp.position):
         if named is not None and named[1] not in named_by_interiors(sectors.by_index[named[0]]):
             shares[named] = shares.get(named, 0) + share
+    seen = {
+        k: sum(share if j == k else share * sees(sectors, k, j) for j, share in shares.items())
+        for k in shares
+    }
+    all_of_them = sum(shares.values())
+    shares = {named: share * (seen[named] / all_of_them) ** 8 for named, share in shares.items()}
     total = sum(shares.values())
     return {named: share / total for named, share in shares.items()}
+
+
+def bounce_between(sectors, receiver, source):
+    """What a light at the source brings to the receiver, band 0 of all channels; None where the file does not say."""
+    pairs = sectors.by_index[receiver[0]]["probes"][receiver[1]].get("local")
+    if pairs is None:
+        return None
+    here = [pair for pair in pairs if (tuple(pair["sector"]), pair["probe"]) == source]
+    return sum(pair["coefficients"][c][0] for pair in here for c in CHANNELS)
+
+
+def sees(sectors, a, b):
+    """How far two probes see the same space, 0 to 1."""
+    found = [bounce_between(sectors, *pair) for pair in ((a, a), (b, b), (a, b), (b, a))]
+    if None in found or found[0] * found[1] <= 0:
+        return 1
+    at, there = (sectors.by_index[index]["probes"][p]["position"] for index, p in (a, b))
+    flat = (1 + math.dist(at, there) ** 2 / 4) ** -1.5
+    return min(1, max(found[2], found[3]) / (math.sqrt(found[0] * found[1]) * flat / 4))
 
 
 class Relighter:

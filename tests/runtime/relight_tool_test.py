@@ -105,7 +105,10 @@ def shuffle_local(data, at, probes, rng):
         data[at + receivers_at + 8 * p + 4] = rng.randint(0, 1)
         mask_at = masks_at + mask_bytes * p
         bits = int.from_bytes(section[mask_at : mask_at + mask_bytes], "little").bit_count()
-        mask = sum(1 << s for s in rng.sample(range(min(sources, len(near))), bits))
+        # With itself, so that a lamp's shares know which of the others it sees.
+        itself = near.index((0, 0, p))
+        others = [s for s in range(min(sources, len(near))) if s != itself]
+        mask = sum(1 << s for s in [itself, *rng.sample(others, bits - 1)])
         data[at + mask_at : at + mask_at + mask_bytes] = mask.to_bytes(mask_bytes, "little")
     for row in range(3 * pairs):
         codes = rng.randrange(30000), *(rng.randint(-30000, 30000) for _ in range(3))

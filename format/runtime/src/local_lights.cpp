@@ -46,6 +46,72 @@ LightShare share_of(const PointLight& light, const SectorView& sector, std::uint
     return part;
 }
 
+// What a light at one probe brings to another by bounce, all channels and directions; below 0 where the files
+// do not say, because the receiver's has no local transfer.
+float bounce_between(const ProbeShare& receiver, const ProbeShare& source) {
+    const SectorView& sector = receiver.sector->view;
+    if (sector.local_receivers.empty())
+        return -1;
+    const std::int32_t di = source.sector->view.i - sector.i;
+    const std::int32_t dj = source.sector->view.j - sector.j;
+    const auto found =
+        std::find_if(sector.local_sources.begin(), sector.local_sources.end(), [&](const LocalSource& s) {
+            return s.probe == source.probe && s.di == di && s.dj == dj;
+        });
+    if (found == sector.local_sources.end())
+        return 0;
+    const auto index = static_cast<std::size_t>(found - sector.local_sources.begin());
+    const auto [codes, scale] = find_local_pair(sector, receiver.probe, index);
+    if (codes == nullptr)
+        return 0;
+    float sum = 0;
+    for (const auto& channel : *codes)
+        sum += decode_fixed(channel[0], scale);
+    return sum;
+}
+
+// How far two probes see the same space, 0 to 1, by what they send each other: a quarter or more of what they
+// would over flat ground counts as all of it. There a light at a height h brings a probe at the same height,
+// at a distance d, (1 + (d / 2 h)^2)^(-3/2) of what it brings the probe at its own place: both kernels are
+// Poisson's, and convolve to one of twice the height. 1 where the files do not say.
+float sees(const ProbeShare& a, const ProbeShare& b) {
+    constexpr double twice_height_m = 2;
+    constexpr float enough = 0.25f;
+    const float own = bounce_between(a, a) * bounce_between(b, b);
+    const float there = bounce_between(a, b);
+    const float back = bounce_between(b, a);
+    if (!(own > 0) || there < 0 || back < 0)
+        return 1;
+    const Double3 place_a = place_of(a.sector->view, a.probe);
+    const Double3 place_b = place_of(b.sector->view, b.probe);
+    const double ratio = squared_distance(place_a, place_b) / (twice_height_m * twice_height_m);
+    const auto flat = static_cast<float>(1 / ((1 + ratio) * std::sqrt(1 + ratio)));
+    return std::min(1.0f, std::max(there, back) / (std::sqrt(own) * flat * enough));
+}
+
+// A cell does not know walls: a lamp beside one would give half of its light to the other side. So a probe's
+// share falls with what of the shares it does not see, steeply: the side that has more of them takes nearly
+// all.
+void keep_to_one_side(std::span<ProbeShare> probes) {
+    std::array<float, max_shares_per_light> seen{};
+    float all = 0;
+    for (std::size_t k = 0; k < probes.size(); ++k) {
+        all += probes[k].share;
+        seen[k] += probes[k].share;
+        for (std::size_t j = k + 1; j < probes.size(); ++j) {
+            const float pair = sees(probes[k], probes[j]);
+            seen[k] += pair * probes[j].share;
+            seen[j] += pair * probes[k].share;
+        }
+    }
+    for (std::size_t k = 0; k < probes.size(); ++k) {
+        const float share = seen[k] / all;
+        const float squared = share * share;
+        const float to_fourth = squared * squared;
+        probes[k].share *= to_fourth * to_fourth;
+    }
+}
+
 bool shines(const PointLight& light) {
     const Float3& c = light.intensity;
     const bool placed = std::isfinite(light.position[0]) && std::isfinite(light.position[1]) &&
@@ -70,9 +136,11 @@ std::size_t split_light(const SectorSet& set, const PointLight& light, std::span
         const ProbeShare& probe = blend.probes[n];
         if (is_named_by_interior(probe.sector->view, probe.probe))
             continue;
-        sum += probe.share;
         blend.probes[count++] = probe;
     }
+    keep_to_one_side({blend.probes.data(), count});
+    for (std::size_t n = 0; n < count; ++n)
+        sum += blend.probes[n].share;
     for (std::size_t n = 0; n < count; ++n) {
         const ProbeShare& probe = blend.probes[n];
         shares[n] = share_of(light, probe.sector->view, probe.probe, probe.share / sum);
