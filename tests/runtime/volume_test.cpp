@@ -27,11 +27,12 @@ constexpr SectorSetLimits limits{.sectors = 64, .probes = 64 * 64, .interiors = 
 // A volume whose texels were poisoned before anything was written.
 class OwnedVolume {
   public:
-    explicit OwnedVolume(const VolumeSettings& settings) : memory_(Volume::memory_bytes(settings, limits)) {
+    explicit OwnedVolume(const VolumeSettings& settings, int poison = 0xA5)
+        : memory_(Volume::memory_bytes(settings, limits)) {
         volume_ = std::make_unique<Volume>(memory_, settings, limits);
         for (std::size_t k = 0; k < 3; ++k) {
             const auto texels = volume_->texels(k);
-            std::memset(const_cast<std::byte*>(texels.data()), 0xA5, texels.size());
+            std::memset(const_cast<std::byte*>(texels.data()), poison, texels.size());
         }
     }
 
@@ -167,6 +168,17 @@ TEST_P(Moves, GiveTheBytesOfAFullUpdate) {
 
 TEST_P(Moves, GiveTheBytesOfAFullUpdateFarOut) {
     expect_equal_over(GetParam().settings, 1600, GetParam().settings.blur ? 30 : 100);
+}
+
+TEST_P(Moves, TheFirstUpdateWritesEveryTexel) {
+    OwnedSet set(limits);
+    OwnedRelit relit;
+    relit->set_light(Shown::now, daylight());
+    relit->relight(Shown::now, set.add(random_sector_at({0, 0})), daylight(), {});
+    OwnedVolume volume(GetParam().settings, 0xA5), other(GetParam().settings, 0x5A);
+    volume->update(*set, *relit, {21, 33, 5});
+    other->update(*set, *relit, {21, 33, 5});
+    expect_equal(volume, other, "poisoned alike");
 }
 
 // A GPU that uploads the boxes alone has the same texels.
