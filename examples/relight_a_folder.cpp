@@ -19,8 +19,12 @@ int main(int argc, char** argv) {
     if (argc != 2)
         return std::fputs("usage: relight_a_folder FOLDER\n", stderr), 1;
 
-    // 1. Memory for everything, once. The runtime allocates nothing after this.
-    const drtv::SectorSetLimits limits{.sectors = 64, .probes = 64 * drtv::max_probes};
+    // 1. Memory for everything, once: the same limits for all three. The runtime allocates nothing after
+    // this. A game takes the sectors around its camera (64 are many); here all that the folder has.
+    const auto entries = std::filesystem::directory_iterator(argv[1]);
+    const auto count = static_cast<std::uint32_t>(std::distance(begin(entries), end(entries)));
+    const drtv::SectorSetLimits limits{
+        .sectors = count, .probes = count * 255, .interiors = 1024, .tiles = count};
     const drtv::VolumeSettings settings{.encoding = drtv::TexelEncoding::rgba8_sqrt};
     std::vector<std::byte> set_memory(drtv::SectorSet::memory_bytes(limits));
     std::vector<std::byte> relit_memory(drtv::RelitProbes::memory_bytes(limits, false));
@@ -41,10 +45,15 @@ int main(int argc, char** argv) {
             drtv::unpack_sector({reinterpret_cast<const std::uint8_t*>(read.data()), read.size()}, raw);
         files.push_back(std::move(raw));
         const drtv::LoadedSector* sector = nullptr;
-        if (status.ok() && set.load(files.back(), &sector) == drtv::LoadStatus::loaded)
+        const drtv::LoadStatus loaded =
+            status.ok() ? set.load(files.back(), &sector) : drtv::LoadStatus::unreadable;
+        if (loaded == drtv::LoadStatus::loaded)
             sectors.push_back(sector);
         else
-            std::fprintf(stderr, "%s is left out: %s\n", entry.path().c_str(), status.message.c_str());
+            std::fprintf(stderr,
+                         "%s is left out: %s\n",
+                         entry.path().c_str(),
+                         status.ok() ? drtv::sentence_of(loaded) : status.message.c_str());
     }
     std::printf("%zu sectors\n", sectors.size());
 

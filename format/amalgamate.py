@@ -100,10 +100,11 @@ def main():
         if name.endswith(".cpp") and not name.startswith("c_api")
     ]
     body = "".join(pair.text_of(path) for path in sources)
+    absent = "//\n// Raw files only: read_sector and unpack_sector are declared below, and not in the pair. `drtv strip` makes raw files.\n"
     made = "// Made by amalgamate.py of drtv's format/: change it there.\n//\n"
     os.makedirs(sys.argv[1], exist_ok=True)
     with open(os.path.join(sys.argv[1], "drtv_runtime.h"), "w", encoding="utf-8") as file:
-        file.write(made + licence + "#pragma once\n\n" + with_system_includes_first(header))
+        file.write(made + licence + absent + "#pragma once\n\n" + with_system_includes_first(header))
     # Products and sums are rounded one by one, also where a compiler may fuse them.
     exact = '#if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n#elif defined(__GNUC__)\n#pragma GCC optimize("fp-contract=off")\n#endif\n'
     with open(os.path.join(sys.argv[1], "drtv_runtime.cpp"), "w", encoding="utf-8") as file:

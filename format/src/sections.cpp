@@ -131,7 +131,7 @@ ReadStatus decode(const SectionSource& source, Unpacking* unpacking, Section& se
         return fail(ReadError::compressed,
                     entry.offset,
                     section_name(entry),
-                    " is compressed, unpack the file first");
+                    " is compressed: unpack the file first (unpack_sector, or drtv strip)");
     }
     std::vector<std::uint8_t>& raw = unpacking->sections[entry.kind];
     const PackedSection packed{source.stored(), entry, source.probe_count, Local::max_sources(entry.version)};

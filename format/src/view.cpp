@@ -23,11 +23,11 @@ void view_static_irradiance(ByteSpan raw, std::size_t probe_count, SectorView& v
 }
 
 void view_local_transfer(ByteSpan raw, std::size_t probe_count, SectorView& view) {
-    using Local = layout::LocalTransferLayout;
+    using LocalAt = layout::LocalTransferLayout;
     const auto [sources, pairs] = load_local_transfer_counts(raw);
-    const Local parts(probe_count, sources, pairs);
+    const LocalAt parts(probe_count, sources, pairs);
     const std::size_t mask_bytes = local_mask_bytes(sources);
-    view.local_sources = elements<LocalSource>(raw, Local::header_bytes, sources);
+    view.local_sources = elements<LocalSource>(raw, LocalAt::header_bytes, sources);
     view.local_receivers = elements<StoredReceiver>(raw, parts.receivers, probe_count);
     view.local_mask_bytes = mask_bytes;
     view.local_masks = raw.subspan(parts.masks, probe_count * mask_bytes);
@@ -35,19 +35,19 @@ void view_local_transfer(ByteSpan raw, std::size_t probe_count, SectorView& view
 }
 
 void view_interiors(ByteSpan raw, SectorView& view) {
-    using Rooms = layout::InteriorsLayout;
+    using RoomsAt = layout::InteriorsLayout;
     const auto [interiors, vertices, triangles] = load_interiors_counts(raw);
-    const Rooms parts(interiors, vertices, triangles);
-    view.interiors = elements<StoredInterior>(raw, Rooms::header_bytes, interiors);
+    const RoomsAt parts(interiors, vertices, triangles);
+    view.interiors = elements<StoredInterior>(raw, RoomsAt::header_bytes, interiors);
     view.interior_vertices = elements<Triple>(raw, parts.vertices, vertices);
     view.interior_triangles = elements<Triple>(raw, parts.triangles, triangles);
 }
 
 void view_light_groups(ByteSpan raw, std::size_t probe_count, SectorView& view) {
-    using Groups = layout::LightGroupsLayout;
-    const std::size_t groups = load_u16(raw, Groups::group_count);
-    const Groups parts(probe_count, groups);
-    view.light_group_names = elements<StoredName>(raw, Groups::header_bytes, groups);
+    using GroupsAt = layout::LightGroupsLayout;
+    const std::size_t groups = load_u16(raw, GroupsAt::group_count);
+    const GroupsAt parts(probe_count, groups);
+    view.light_group_names = elements<StoredName>(raw, GroupsAt::header_bytes, groups);
     view.light_group_irradiance = elements<LightCodes>(raw, parts.codes, groups * probe_count);
     view.light_group_exponents = elements<std::int8_t>(raw, parts.exponents, groups * probe_count);
 }

@@ -129,6 +129,19 @@ bool read_camera(const RelightRequest& request, std::optional<Double3>& camera) 
     return true;
 }
 
+// A name that no loaded sector has is hardly meant; it may stand elsewhere, so it is no error.
+void warn_of_unknown_groups(const SectorSet& set, const RequestedLight& requested) {
+    for (const std::string& name : requested.names) {
+        bool known = false;
+        for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
+            const LoadedSector* sector = set.at(slot);
+            known = known || (sector != nullptr && find_light_group(sector->view, name));
+        }
+        if (!known)
+            complain("warning: none of the sectors around the places has a light group \"" + name + "\"");
+    }
+}
+
 VolumeSettings settings_of(const std::string& encoding) {
     VolumeSettings settings;
     settings.encoding = encoding == "rgba8"        ? TexelEncoding::rgba8
@@ -198,6 +211,7 @@ int run_relight(const RelightRequest& request) {
         return exit_code;
 
     const SectorSet& set = folder.set();
+    warn_of_unknown_groups(set, requested);
     std::vector<LightShare> lamps;
     for (const PointLight& lamp : requested.lamps) {
         std::array<LightShare, max_shares_per_light> shares;

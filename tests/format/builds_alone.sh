@@ -48,9 +48,13 @@ grep -q "The drtv tool is left out: CLI11, stb not found" "$work/log" || { cat "
 run ninja -C "$work/no_tool" -n $libraries
 [ -z "$(ninja -C "$work/no_tool" -t query drtv 2>/dev/null)" ] || fail "the tool is built without what it needs"
 
-# shellcheck disable=SC2086
-build shared clang++-14 -DBUILD_SHARED_LIBS=ON -- $libraries
+build shared clang++-14 -DBUILD_SHARED_LIBS=ON -- all
 [ -n "$(find "$work/shared" -name 'libdrtv_format.so*')" ] || fail "BUILD_SHARED_LIBS made no shared library"
+# Installed ones find each other, wherever the folder stands.
+run cmake --install "$work/shared" --prefix "$work/prefix"
+mv "$work/prefix" "$work/moved"
+run "$work/moved/bin/drtv" --version
+ldd "$work/moved/lib/libdrtv_runtime.so" | grep -q "libdrtv_format.so.* => $work/moved" || fail "libdrtv_runtime does not find libdrtv_format"
 
 for compiler in g++-12 clang++-14; do
     # shellcheck disable=SC2086

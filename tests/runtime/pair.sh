@@ -13,7 +13,7 @@ cp "$source/tests/runtime/same_bits.cpp" "$work/pair"
 cd "$work/pair"
 mkdir sectors
 files=$("$write_sectors" sectors)
-flags="-std=c++20 -Wall -Wextra -Wpedantic -Werror -fno-exceptions -fno-rtti"
+flags="-std=c++20 -Wall -Wextra -Wpedantic -Wshadow -Werror -fno-exceptions -fno-rtti"
 
 # 64 KB of code, optimised for size.
 # shellcheck disable=SC2086

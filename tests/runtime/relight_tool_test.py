@@ -181,8 +181,17 @@ class Numbers(Tool):
             self.write(f"world/sector_{i}_{j}.drtv", data)
 
     def asked(self, places, *arguments):
+        unknown = any("of no sector" in argument for argument in arguments)
         stdout = self.expect(
-            0, "relight", self.path("world"), "--json", "--points", "-", *arguments, input=as_lines(places)
+            0,
+            "relight",
+            self.path("world"),
+            "--json",
+            "--points",
+            "-",
+            *arguments,
+            input=as_lines(places),
+            err='has a light group "of no sector"' if unknown else "",
         )
         return [json.loads(line) for line in stdout.splitlines()]
 

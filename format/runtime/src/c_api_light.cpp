@@ -28,6 +28,8 @@ drtv_set* drtv_set_make(void* memory, size_t bytes, const drtv_limits* limits) {
 int drtv_set_load(drtv_set* set, const void* file, size_t file_bytes, char* why, size_t why_bytes) {
     ReadStatus status;
     const LoadStatus loaded = set->load(bytes_of(file, file_bytes), nullptr, &status);
+    if (loaded != LoadStatus::loaded && status.ok())
+        status.message = sentence_of(loaded);
     tell(status, why, why_bytes);
     return static_cast<int>(loaded);
 }

@@ -57,6 +57,20 @@ SetMemory counts_of(const SectorSetLimits& limits) {
 
 }  // namespace
 
+const char* sentence_of(LoadStatus status) {
+    switch (status) {
+        case LoadStatus::loaded:
+            return "it is loaded";
+        case LoadStatus::unreadable:
+            return "it cannot be read";
+        case LoadStatus::already_there:
+            return "its sector is there already";
+        case LoadStatus::no_room:
+            break;
+    }
+    return "there is no room for it: the limits of the set are reached";
+}
+
 std::size_t SectorSet::memory_bytes(const SectorSetLimits& limits) {
     const SetMemory counts = counts_of(limits);
     return Arena::bytes_of<Slot>(counts.slots) + Arena::bytes_of<TableEntry>(counts.slot_table) +

@@ -1,5 +1,6 @@
 // From relit probes to texels of each probe, and back from texels to colours.
 #include "volume_texels.h"
+#include "columns.h"
 
 #include <drtv/sky_tile.h>
 
@@ -50,7 +51,6 @@ BasisColours fallback_at(const Volume::State& state, const Volume::State::Under&
 }
 
 void look_under(Volume::State& state, const SectorSet& set, const RelitProbes& relit) {
-    constexpr double cell_m = double{sector_size_m} / grid_size;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::int32_t size = state.settings.size[axis];
         const std::int32_t border = state.border();

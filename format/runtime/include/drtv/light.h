@@ -77,9 +77,9 @@ struct SceneLight {
     RelightMode mode = RelightMode::accurate;
     DistantLight sky{};
     Sun sun{};
-    Float3 static_colour{1, 1, 1};  // factor of the map's own lights that are in no group
-    std::span<const GroupColour> groups{};
-    Float3 other_groups{};  // factor of groups that are not named above
+    Float3 static_colour{1, 1, 1};          // factor of the map's own lights that are in no group
+    std::span<const GroupColour> groups{};  // must stay as long as this is used
+    Float3 other_groups{};                  // factor of groups that are not named above
 };
 
 }  // namespace drtv

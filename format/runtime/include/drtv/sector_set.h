@@ -48,6 +48,9 @@ enum class LoadStatus : std::uint8_t {
     no_room,        // a limit is reached, or no run of free probes is long enough
 };
 
+// A sentence: "there is no room for it", ...
+[[nodiscard]] const char* sentence_of(LoadStatus status);
+
 // What is known of a place.
 enum class PlaceStatus : std::uint8_t {
     inside,          // probes alone

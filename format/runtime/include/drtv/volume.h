@@ -106,8 +106,8 @@ class Volume {
     [[nodiscard]] bool is_filled() const;
     [[nodiscard]] const VolumeSettings& settings() const;
 
-    // What a shader finds at a place: linear filtering between texels, and how much of it counts. On the CPU,
-    // for tests and tools.
+    // What a shader finds at a place: linear filtering between texels, and how much of it counts. It knows
+    // neither interiors nor the distance; ambient_in (drtv/ambient.h) does. On the CPU, for tests and tools.
     struct Sample {
         BasisColours colours{};  // decoded
         // 1 inside, 0 from half a texel within the window's sides on: there the distance lights (slide 57).
