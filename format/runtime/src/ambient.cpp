@@ -1,8 +1,8 @@
 #include <drtv/ambient.h>
 
+#include "share_batches.h"
 #include "vector.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace drtv {
@@ -42,12 +42,10 @@ class Gathering {
         const SectorView& view = sector.view;
         BasisColours colours = relight(view, p, light_);
         BasisColours lamps{};
-        for (std::size_t first = 0; first < lights_.size(); first += LocalRelighter::max_shares) {
-            const std::size_t count = std::min(lights_.size() - first, LocalRelighter::max_shares);
-            const LocalRelighter local(sector, lights_.subspan(first, count));
+        for_each_batch(sector, lights_, [&](const LocalRelighter& local) {
             local.add_to(colours, p);
             local.add_to(lamps, p);
-        }
+        });
         add(colours_, clamped(colours), share);
 
         add_part(parts_.sky_direct, relight(TransferCodes{}, view.sky_visibility[p], sky_), share);
@@ -64,7 +62,8 @@ class Gathering {
         add_part(parts_.fallback, colours, share);
     }
 
-    void add_blend(const ProbeBlend& blend, float sky_factor, float share) {
+    // The sky's factor is that of `world_m`, which is asked for where the fallback has a share.
+    void add_blend(const ProbeBlend& blend, const SectorSet& set, const Double3& world_m, float share) {
         if (!(share > 0))
             return;
         for (std::size_t n = 0; n < blend.count; ++n) {
@@ -72,7 +71,7 @@ class Gathering {
             add_probe(*probe.sector, probe.probe, probe.share * share);
         }
         if (blend.fallback > 0)
-            add_fallback(sky_factor, blend.fallback * share);
+            add_fallback(set.sky_factor(world_m), blend.fallback * share);
     }
 
     [[nodiscard]] const BasisColours& colours() const { return colours_; }
@@ -180,7 +179,7 @@ Ambient ambient_at(const SectorSet& set,
     const ProbeBlend blend = place.sampling == Sampling::nearest ? nearest : set.trilinear(asked);
     Gathering gathering(light, lamps, basis_weights(light.mode, place.normal));
     Ambient ambient = indoors_of(set, place, nearest, gathering);
-    gathering.add_blend(blend, set.sky_factor(asked), 1 - ambient.interior.share);
+    gathering.add_blend(blend, set, asked, 1 - ambient.interior.share);
     ambient.status = status_of(blend, ambient.interior.share);
     finish(ambient, gathering, gathering.colours(), light.mode, place);
     return ambient;
@@ -198,7 +197,8 @@ Ambient ambient_in(const Volume& volume,
     const float outdoors = 1 - ambient.interior.share;
     BasisColours colours = gathering.colours();
     Gathering distance(light, lamps, basis_weights(light.mode, place.normal));
-    distance.add_fallback(set.sky_factor(asked), 1);
+    const float sky_factor = set.sky_factor(asked);
+    distance.add_fallback(sky_factor, 1);
     add(colours, sample.colours, outdoors * sample.weight);
     add(colours, distance.colours(), outdoors * (1 - sample.weight));
 
@@ -207,11 +207,11 @@ Ambient ambient_in(const Volume& volume,
     if (sample.weight > 0) {
         blend = blend_of_texels(
             set, volume.settings(), asked, [&](const Double3& centre, const ProbeBlend& texel, float share) {
-                gathering.add_blend(texel, set.sky_factor(centre), outdoors * sample.weight * share);
+                gathering.add_blend(texel, set, centre, outdoors * sample.weight * share);
             });
     }
     if (sample.weight < 1)
-        gathering.add_fallback(set.sky_factor(asked), outdoors * (1 - sample.weight));
+        gathering.add_fallback(sky_factor, outdoors * (1 - sample.weight));
     const bool fades = sample.weight > 0 && sample.weight < 1 && blend.status == PlaceStatus::inside;
     if (fades)
         blend.status = PlaceStatus::fading;

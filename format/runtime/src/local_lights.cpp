@@ -1,10 +1,12 @@
 #include <drtv/local_lights.h>
 
+#include "share_batches.h"
 #include "simd.h"
 #include "vector.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace drtv {
 namespace {
@@ -46,22 +48,30 @@ LightShare share_of(const PointLight& light, const SectorView& sector, std::uint
     return part;
 }
 
+// The index of a probe among the local sources of a sector; nothing where it is none.
+std::optional<std::size_t> find_source(const SectorView& sector, SectorId of, std::uint8_t probe) {
+    const std::int64_t di = std::int64_t{of.i} - sector.i;
+    const std::int64_t dj = std::int64_t{of.j} - sector.j;
+    const std::span<const LocalSource> sources = sector.local_sources;
+    const auto found = std::find_if(sources.begin(), sources.end(), [&](const LocalSource& s) {
+        return s.probe == probe && s.di == di && s.dj == dj;
+    });
+    if (found == sources.end())
+        return std::nullopt;
+    return static_cast<std::size_t>(found - sources.begin());
+}
+
 // What a light at one probe brings to another by bounce, all channels and directions; below 0 where the files
 // do not say, because the receiver's has no local transfer.
 float bounce_between(const ProbeShare& receiver, const ProbeShare& source) {
     const SectorView& sector = receiver.sector->view;
     if (sector.local_receivers.empty())
         return -1;
-    const std::int32_t di = source.sector->view.i - sector.i;
-    const std::int32_t dj = source.sector->view.j - sector.j;
-    const auto found =
-        std::find_if(sector.local_sources.begin(), sector.local_sources.end(), [&](const LocalSource& s) {
-            return s.probe == source.probe && s.di == di && s.dj == dj;
-        });
-    if (found == sector.local_sources.end())
+    const SectorView& of = source.sector->view;
+    const auto index = find_source(sector, {of.i, of.j}, source.probe);
+    if (!index)
         return 0;
-    const auto index = static_cast<std::size_t>(found - sector.local_sources.begin());
-    const auto [codes, scale] = find_local_pair(sector, receiver.probe, index);
+    const auto [codes, scale] = find_local_pair(sector, receiver.probe, *index);
     if (codes == nullptr)
         return 0;
     float sum = 0;
@@ -73,11 +83,11 @@ float bounce_between(const ProbeShare& receiver, const ProbeShare& source) {
 // How far two probes see the same space, 0 to 1, by what they send each other: a quarter or more of what they
 // would over flat ground counts as all of it. There a light at a height h brings a probe at the same height,
 // at a distance d, (1 + (d / 2 h)^2)^(-3/2) of what it brings the probe at its own place: both kernels are
-// Poisson's, and convolve to one of twice the height. 1 where the files do not say.
-float sees(const ProbeShare& a, const ProbeShare& b) {
+// Poisson's, and convolve to one of twice the height. 1 where the files do not say. `own`: the product of
+// what each brings to itself.
+float sees(const ProbeShare& a, const ProbeShare& b, float own) {
     constexpr double twice_height_m = 2;
     constexpr float enough = 0.25f;
-    const float own = bounce_between(a, a) * bounce_between(b, b);
     const float there = bounce_between(a, b);
     const float back = bounce_between(b, a);
     if (!(own > 0) || there < 0 || back < 0)
@@ -93,13 +103,16 @@ float sees(const ProbeShare& a, const ProbeShare& b) {
 // share falls with what of the shares it does not see, steeply: the side that has more of them takes nearly
 // all.
 void keep_to_one_side(std::span<ProbeShare> probes) {
+    std::array<float, max_shares_per_light> own{};
+    for (std::size_t k = 0; k < probes.size(); ++k)
+        own[k] = bounce_between(probes[k], probes[k]);
     std::array<float, max_shares_per_light> seen{};
     float all = 0;
     for (std::size_t k = 0; k < probes.size(); ++k) {
         all += probes[k].share;
         seen[k] += probes[k].share;
         for (std::size_t j = k + 1; j < probes.size(); ++j) {
-            const float pair = sees(probes[k], probes[j]);
+            const float pair = sees(probes[k], probes[j], own[k] * own[j]);
             seen[k] += pair * probes[j].share;
             seen[j] += pair * probes[k].share;
         }
@@ -150,17 +163,11 @@ std::size_t split_light(const SectorSet& set, const PointLight& light, std::span
 
 LocalRelighter::LocalRelighter(const LoadedSector& sector, std::span<const LightShare> shares)
     : sector_(&sector.view) {
-    const std::span<const LocalSource> sources = sector_->local_sources;
     for (const LightShare& share : shares) {
-        const std::int64_t di = std::int64_t{share.sector.i} - sector_->i;
-        const std::int64_t dj = std::int64_t{share.sector.j} - sector_->j;
-        if (std::abs(di) > 1 || std::abs(dj) > 1)
+        if (!is_beside(*sector_, share.sector))
             continue;
-        const auto source = std::find_if(sources.begin(), sources.end(), [&](const LocalSource& s) {
-            return s.probe == share.probe && s.di == di && s.dj == dj;
-        });
-        if (source != sources.end())
-            sources_[count_++] = {static_cast<std::uint16_t>(source - sources.begin()), &share};
+        if (const auto source = find_source(*sector_, share.sector, share.probe))
+            sources_[count_++] = {static_cast<std::uint16_t>(*source), &share};
     }
 }
 

@@ -1,10 +1,10 @@
 #include <drtv/relit_probes.h>
 
 #include "arena.h"
+#include "share_batches.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 
 namespace drtv {
 namespace {
@@ -25,8 +25,7 @@ BasisColours mixed(const BasisColours& now, const BasisColours& next, float shar
 // Whether a share is near enough to bring something.
 bool has_source(const SectorView& sector, std::span<const LightShare> shares) {
     return std::any_of(shares.begin(), shares.end(), [&](const LightShare& share) {
-        return std::abs(std::int64_t{share.sector.i} - sector.i) <= 1 &&
-               std::abs(std::int64_t{share.sector.j} - sector.j) <= 1;
+        return is_beside(sector, share.sector);
     });
 }
 
@@ -73,12 +72,10 @@ void RelitProbes::relight(Shown shown,
         std::array<BasisColours, max_probes> colours;
         for (std::size_t p = 0; p < out.size(); ++p)
             colours[p] = relighter(p);
-        for (std::size_t first = 0; first < lamps.size(); first += LocalRelighter::max_shares) {
-            const std::size_t count = std::min(lamps.size() - first, LocalRelighter::max_shares);
-            const LocalRelighter local(sector, lamps.subspan(first, count));
+        for_each_batch(sector, lamps, [&](const LocalRelighter& local) {
             for (std::size_t p = 0; p < out.size(); ++p)
                 local.add_to(colours[p], p);
-        }
+        });
         for (std::size_t p = 0; p < out.size(); ++p) {
             const BasisColours visible = clamped(colours[p]);
             largest = std::max(largest, largest_of(visible));
