@@ -30,24 +30,12 @@ PUBLIC = [
     "volume",
 ]
 
-# Of format/src: what opens a raw file. All of format/runtime/src comes with it but for the C face, which is libdrtv's.
-SOURCES = [
-    "checksum",
-    "codec_none",
-    "file_header",
-    "interior_lookup",
-    "interiors_content",
-    "local_transfer_content",
-    "read_failure",
-    "section_content",
-    "section_table",
-    "sections",
-    "sentence",
-    "sky_tile",
-    "tile_file",
-    "view",
-    "view_lookup",
-]
+
+def opening_sources():
+    """Of format/src: what opens a raw file, as CMakeLists.txt has it. All of format/runtime/src comes with it but for the C
+    face, which is libdrtv's."""
+    with open(os.path.join(FORMAT, "CMakeLists.txt"), encoding="utf-8") as file:
+        return re.search(r"set\(opening_sources\s+([^)]*)\)", file.read()).group(1).split()
 
 
 class Pair:
@@ -93,7 +81,7 @@ def main():
     pair = Pair()
     header = "".join(pair.text_of(pair.path_of(f"drtv/{name}.h", FORMAT)) for name in PUBLIC)
     runtime = os.path.join(FORMAT, "runtime", "src")
-    sources = [os.path.join(FORMAT, "src", f"{name}.cpp") for name in SOURCES]
+    sources = [os.path.join(FORMAT, name) for name in opening_sources()]
     sources += [
         os.path.join(runtime, name)
         for name in sorted(os.listdir(runtime))

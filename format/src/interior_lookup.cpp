@@ -71,7 +71,7 @@ std::optional<Vector> point_in_steps(const StoredInterior& interior, const Doubl
 
 // Squared distance from the origin to a triangle, by the region in which the nearest point lies (C. Ericson,
 // "Real-Time Collision Detection", 2005, section 5.1.5).
-double squared_distance(const Vector& a, const Vector& b, const Vector& c) {
+double squared_distance_to_triangle(const Vector& a, const Vector& b, const Vector& c) {
     const Vector ab = b - a;
     const Vector ac = c - a;
     const double d1 = -dot(ab, a);
@@ -169,7 +169,7 @@ double signed_distance_m(const SectorView& sector, const StoredInterior& interio
     };
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [a, b, c] : triangles) {
-        const double squared = squared_distance(corner(a), corner(b), corner(c));
+        const double squared = squared_distance_to_triangle(corner(a), corner(b), corner(c));
         if (squared < least)  // a triangle without an area may give no number
             least = squared;
     }

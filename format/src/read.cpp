@@ -4,6 +4,7 @@
 
 #include "bytes.h"
 #include "section_headers.h"
+#include "section_table.h"
 #include "sections.h"
 
 #include <algorithm>
@@ -243,6 +244,16 @@ void copy_sector(ByteSpan file, const Sections& sections, Sector& sector) {
         read_light_groups(sections.raw(SectionKind::light_groups), probe_count, sector.light_groups);
     if (sections.has(SectionKind::quality))
         sector.quality = read_quality(sections.raw(SectionKind::quality), probe_count);
+}
+
+ReadStatus read_section_table(ByteSpan bytes, std::vector<SectionEntry>& entries) {
+    entries.clear();
+    SectionTable table;
+    ReadStatus status = load_section_table(bytes, table);
+    if (status.ok())
+        entries.assign(table.entries.begin(),
+                       table.entries.begin() + static_cast<std::ptrdiff_t>(table.count));
+    return status;
 }
 
 ReadStatus read_sector(ByteSpan bytes, Sector& sector) {

@@ -157,14 +157,4 @@ ReadStatus load_section_table(ByteSpan file, SectionTable& table) {
                 " bytes");
 }
 
-ReadStatus read_section_table(ByteSpan bytes, std::vector<SectionEntry>& entries) {
-    entries.clear();
-    SectionTable table;
-    ReadStatus status = load_section_table(bytes, table);
-    if (status.ok())
-        entries.assign(table.entries.begin(),
-                       table.entries.begin() + static_cast<std::ptrdiff_t>(table.count));
-    return status;
-}
-
 }  // namespace drtv

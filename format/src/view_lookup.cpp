@@ -37,6 +37,13 @@ Float3 position_m(const SectorView& sector, std::size_t p) {
     return metres_of(units_of(sector, sector.positions[p].position));
 }
 
+Double3 place_m(const SectorView& sector, std::size_t p) {
+    const Units3 units = units_of(sector, sector.positions[p].position);
+    return {units[0] * double{position_unit_m},
+            units[1] * double{position_unit_m},
+            units[2] * double{position_unit_m}};
+}
+
 std::uint8_t find_probe(const SectorView& sector, const Double3& world_m) {
     const StoredGrid& grid = *sector.grid;
     constexpr double side_m = sector_size_m;

@@ -142,8 +142,10 @@ void warn_of_unknown_groups(const SectorSet& set, const RequestedLight& requeste
     }
 }
 
-VolumeSettings settings_of(const std::string& encoding) {
+VolumeSettings settings_of(const RelightRequest& request) {
     VolumeSettings settings;
+    const std::string& encoding = request.encoding;
+    settings.outdoors = request.interiors;
     settings.encoding = encoding == "rgba8"        ? TexelEncoding::rgba8
                         : encoding == "rgba8-sqrt" ? TexelEncoding::rgba8_sqrt
                                                    : TexelEncoding::rgba16f;
@@ -220,7 +222,7 @@ int run_relight(const RelightRequest& request) {
     }
     std::optional<RelitVolume> volume;
     if (request.by == "volume")
-        volume.emplace(set, requested.light, lamps, settings_of(request.encoding));
+        volume.emplace(set, requested.light, lamps, settings_of(request));
     if (!request.json)
         print_head();
     for (const RelightPoint& point : points) {
@@ -228,7 +230,7 @@ int run_relight(const RelightRequest& request) {
         place.at = point.at;
         place.normal = point.normal;
         place.sampling = request.by == "nearest" ? Sampling::nearest : Sampling::trilinear;
-        place.offset_m = static_cast<float>(request.offset_m);
+        place.offset_m = static_cast<float>(request.offset_m.value_or(volume ? volume_offset_m : 0));
         place.interiors = request.interiors;
         const Ambient ambient =
             volume ? ambient_in(volume->at(camera.value_or(point.at)), set, requested.light, lamps, place)

@@ -2,18 +2,12 @@
 //
 // Exit 0: no quantity is systematically off by more than 0.2 % of its mean, as far as 3 standard errors tell;
 // 1: one is; 2: a file or an option is no good.
-#include "bakerd/map/file_source.h"
-#include "bakerd/map/import.h"
 #include "tests/reference/check_compare.h"
-
-#include <drtv/read.h>
+#include "tests/reference/check_files.h"
 
 #include <cstdio>
 #include <exception>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
@@ -82,28 +76,6 @@ Arguments parse(int argc, char** argv) {
     return arguments;
 }
 
-map::Map read_map(const std::string& path) {
-    const std::filesystem::path file(path);
-    const std::string name = file.filename().string(), folder = file.parent_path().string();
-    auto map = map::import_map({&name, 1}, map::folder_source(folder.empty() ? "." : folder));
-    if (!map)
-        throw std::runtime_error(map.error());
-    return std::move(*map);
-}
-
-Sector read_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    const std::vector<char> chars{std::istreambuf_iterator<char>(file), {}};
-    const std::vector<std::uint8_t> bytes(chars.begin(), chars.end());
-    Sector sector;
-    const ReadStatus status = read_sector(bytes, sector);
-    if (!status.ok())
-        throw std::runtime_error(path + ": " + status.message);
-    if (sector.probes.empty())
-        throw std::runtime_error(path + ": it has no probes");
-    return sector;
-}
-
 void print_worst(const Quantity& quantity, const Figures& figures) {
     const ProbeFigures& probe = quantity.probes[figures.worst_probe];
     const Compared& number = probe.numbers[figures.worst_number];
@@ -120,7 +92,9 @@ void print_worst(const Quantity& quantity, const Figures& figures) {
 }
 
 int run(const Arguments& arguments) {
-    const Sector sector = read_file(arguments.sector);
+    const Sector sector = read_sector_file(arguments.sector);
+    if (sector.probes.empty())
+        throw std::runtime_error(arguments.sector + ": it has no probes");
     const map::Map map = read_map(arguments.map);
     std::printf(
         "sector %d, %d: %zu probes, %u rays, %u bounces, reach %g m; %s static irradiance, %s local "

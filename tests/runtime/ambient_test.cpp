@@ -349,8 +349,8 @@ TEST(SplitLight, KeepsToItsSideOfAWall) {
     }
 }
 
-// At its source a lamp brings I R Y(b); farther off than its source it counts less, by the squared distances.
-TEST(LocalRelighter, IsTheSumOverPairsTimesTheFactorOfNearness) {
+// At its source a lamp brings I R Y(b); elsewhere what flat ground would make of it.
+TEST(LocalRelighter, IsTheSumOverPairsTimesTheFactorOfItsPlace) {
     OwnedSet set;
     const LoadedSector& sector = set.add(connected_sector({0, 0}, 0.25f));
     const Double3 source = {8, 8, 2};
@@ -365,11 +365,16 @@ TEST(LocalRelighter, IsTheSumOverPairsTimesTheFactorOfNearness) {
     shares[0].light = {8, 8, 4};
     BasisColours own{};
     LocalRelighter(sector, {shares.data(), 1}).add_to(own, 0);
-    EXPECT_NEAR(own[0][0], 0.25f * 0.282095f * 2.25f / 6.25f, 1e-5);
+    EXPECT_NEAR(own[0][0], 0.25f * 0.282095f * (4.0f / 64) / (2.0f / 8), 1e-5)
+        << "3 m over the ground, by 1 m";
     shares[0].light = {8.5, 8, 2};
     BasisColours towards{};
     LocalRelighter(sector, {shares.data(), 1}).add_to(towards, 1);
-    EXPECT_NEAR(towards[0][0], 0.25f * 0.282095f, 1e-5) << "never more than at the source";
+    EXPECT_NEAR(towards[0][0], 0.25f * 0.282095f * 1.09833f, 1e-5) << "(260 / 244.25)^(3/2)";
+    shares[0].light = {24, 8, 2};
+    BasisColours there{};
+    LocalRelighter(sector, {shares.data(), 1}).add_to(there, 1);
+    EXPECT_NEAR(there[0][0], 0.25f * 0.282095f * 3, 1e-5) << "never more than three times";
 }
 
 TEST(LocalRelighter, ReachesTheNeighboursAndNoFurther) {

@@ -39,17 +39,24 @@ class CFace(unittest.TestCase):
             [program, GOLDEN, *at.split(",")], env=environment, capture_output=True, text=True
         )
         self.assertEqual(found.returncode, 0, found)
+        lines = found.stdout.splitlines()
+        self.expect_line(lines[0], at)
+        window = ["--by", "volume", "--camera", at]
+        self.expect_line(lines[1], at, *window, tolerance=2e-3)  # another size of window, halves
+
+    def expect_line(self, line, at, *options, tolerance=1e-6):
         lamp = f"{at},1,2,3"
         told = subprocess.run(
-            [DRTV, "relight", GOLDEN, "--at", at, "--normal", "0,0,1", "--light", lamp, "--json", *LIGHT],
+            [DRTV, "relight", GOLDEN, "--at", at, "--normal", "0,0,1", "--light", lamp, "--json"]
+            + [*LIGHT, *options],
             capture_output=True,
             check=True,
         )
         expected = json.loads(told.stdout)
-        status, *colour = found.stdout.split()
+        status, *colour = line.split()
         self.assertEqual(STATUS[int(status)], expected["status"])
         for channel, value in zip(colour, expected["colour"]):
-            self.assertAlmostEqual(float(channel), value, delta=1e-6 * max(1, value))
+            self.assertAlmostEqual(float(channel), value, delta=tolerance * max(1, value))
 
     def test_the_library_shows_the_names_of_its_header_alone(self):
         listing = subprocess.run(

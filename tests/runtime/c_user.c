@@ -64,12 +64,13 @@ int main(int argc, char** argv) {
         return 5;
     settings.size[0] = 32;
     settings.encoding = DRTV_RGBA16F;
+    settings.outdoors = 1;
     const size_t volume_bytes = drtv_volume_bytes(&settings, &limits);
     void* volume_memory = memory_of(volume_bytes);
     drtv_volume* volume = drtv_volume_make(volume_memory, volume_bytes, &settings, &limits);
     drtv_relit_set_light(relit, DRTV_NOW, &light);
     const drtv_sector_id golden = {-1, 2}, missing = {5, 5};
-    if (drtv_relit_sector(relit, set, DRTV_NOW, golden, &light, NULL, 0) != 1 ||
+    if (drtv_relit_sector(relit, set, DRTV_NOW, golden, &light, shares, share_count) != 1 ||
         drtv_relit_sector(relit, set, DRTV_NOW, missing, &light, NULL, 0) != 0)
         return 6;
     drtv_volume_update(volume, set, relit, place.at, 0);
@@ -82,6 +83,31 @@ int main(int argc, char** argv) {
         texture_bytes != 34u * 98 * 18 * 8 || inputs.scale != 1 || !(drtv_relit_largest(relit, set) > 0))
         return 7;
     printf("%d %.9g %.9g %.9g\n", ambient.status, ambient.colour[0], ambient.colour[1], ambient.colour[2]);
+    place.offset_m = 1;
+    drtv_ambient_in(volume, set, &light, shares, share_count, &place, &ambient);
+    printf("%d %.9g %.9g %.9g\n", ambient.status, ambient.colour[0], ambient.colour[1], ambient.colour[2]);
+
+    /* An interior alone, and the distance alone, by hand. */
+    float colours[4][3], colour[3];
+    drtv_interior interior;
+    place.at[2] += 1;
+    if (drtv_interior_at(set, place.at, 1, &interior) && interior.share == 1) {
+        if (!drtv_relit_colours(relit, set, interior.sector, interior.probe, colours))
+            return 8;
+        drtv_shade_ambient(light.mode, (const float(*)[3])colours, place.normal, colour);
+        for (int c = 0; c < 3; ++c) {
+            if (colour[c] < 0.99f * ambient.colour[c] || colour[c] > 1.01f * ambient.colour[c])
+                return 9;
+        }
+    }
+    drtv_relit_fallback(relit, colours);
+    const float factor = drtv_sky_factor(set, place.at);
+    if (ambient.status == DRTV_SECTOR_MISSING && ambient.interior == 0 &&
+        !(ambient.basis_colours[0][1] > 0.99f * factor * colours[0][1] && ambient.basis_colours[0][1] < 1.01f * factor * colours[0][1]))
+        return 10;
+    const drtv_light noon = drtv_light_of_default_day(12);
+    if (!(noon.sun_irradiance[0] > 100 && noon.sun_direction[2] > 0.9f) || drtv_relit_colours(relit, set, missing, 0, colours))
+        return 11;
     drtv_set_drop(set, -1, 2);
     drtv_set_retire(set);
     return drtv_set_has(set, -1, 2);

@@ -18,7 +18,6 @@ CHANNELS, DIRECTIONS = range(3), range(4)
 PARTS = ("sky_direct", "sky_bounce", "sun_bounce", "static", "local", "fallback")
 INTERIOR_SOFT_M = 1
 TILE_FADE_M = 16
-LAMP_SIZE_M = 1.5
 DARK = (0, 0, 0)
 
 
@@ -190,6 +189,7 @@ class Sectors:
     def __init__(self, sectors):
         self.by_index = {tuple(sector["sector"]): sector for sector in sectors}
         self.tiles = {index: sky_tile(sector) for index, sector in self.by_index.items()}
+        self.outdoor_probes = {index: outdoor_probes(sector) for index, sector in self.by_index.items()}
 
     def cell(self, index, cx, cy, cz):
         """(sector index, probe) or None. The height index is clamped."""
@@ -227,6 +227,12 @@ class Sectors:
                 shares.append((self.cell(index, *column, cz), share * part))
         return [(named, share) for named, share in shares if share > 0]
 
+    def outdoors(self, shares):
+        """The same shares for a place that is in no interior."""
+        return [
+            (named and (named[0], self.outdoor_probes[named[0]][named[1]]), share) for named, share in shares
+        ]
+
     def interior(self, place, soft_m=INTERIOR_SOFT_M):
         """(sector index, interior's index, share) or None; a softness of 0 asks for what holds the place."""
         found = []
@@ -263,6 +269,23 @@ def columns_around(place):
     ]
 
 
+def outdoor_probes(sector):
+    """What each probe is outdoors: itself, or the nearest that no interior holds or names."""
+    meshes = sector.get("interiors", [])
+    places = [probe["position"] for probe in sector["probes"]]
+    indoors = {
+        p
+        for p, place in enumerate(places)
+        if p in named_by_interiors(sector) or any(signed_distance(mesh, place) > 0 for mesh in meshes)
+    }
+    others = [p for p in range(len(places)) if p not in indoors]
+
+    def nearest(p):
+        return min(others, key=lambda q: (math.dist(places[p], places[q]), q))
+
+    return [nearest(p) if p in indoors and others else p for p in range(len(places))]
+
+
 def named_by_interiors(sector):
     return {mesh["probe"] for mesh in sector.get("interiors", [])}
 
@@ -295,8 +318,8 @@ def split_lamp(sectors, lamp):
     if holds is not None:
         return {sectors.interior_probe(*holds[:2]): 1}
     shares = {}
-    for named, share in sectors.trilinear(lamp.position):
-        if named is not None and named[1] not in named_by_interiors(sectors.by_index[named[0]]):
+    for named, share in sectors.outdoors(sectors.trilinear(lamp.position)):
+        if named is not None:
             shares[named] = shares.get(named, 0) + share
     seen = {
         k: sum(share if j == k else share * sees(sectors, k, j) for j, share in shares.items())
@@ -373,7 +396,9 @@ class Relighter:
         normal = unit(normal)
         asked = [place + offset_m * n for place, n in zip(at, normal)]
         shares = getattr(self.sectors, sampling)(asked)
-        interior = self.sectors.interior(at) if interiors else None
+        if interiors:
+            shares = self.sectors.outdoors(shares)
+        interior = self.sectors.interior(asked) if interiors else None
         if interior is not None:
             index, n, inside = interior
             outside = [(named, (1 - inside) * share) for named, share in shares if inside < 1]
@@ -417,7 +442,10 @@ class Relighter:
 
 
 def pair_factor(source, lamp, receiver):
-    def squared(a, b):
-        return math.dist(a, b) ** 2 + LAMP_SIZE_M**2
+    """How much more the lamp brings than its share at the source, by what flat ground sends back of each."""
 
-    return min(1, squared(source, receiver) / squared(lamp, receiver))
+    def sent_back(at, height):
+        return (height + 1) * (math.dist(at, receiver) ** 2 + 4 * height) ** -1.5
+
+    height = max(0.25, 1 + lamp[2] - source[2])
+    return min(3, sent_back(lamp, height) / sent_back(source, 1))

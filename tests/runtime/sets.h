@@ -17,6 +17,7 @@ class OwnedSet {
     explicit OwnedSet(const SectorSetLimits& limits = {});
 
     SectorSet& operator*() { return *set_; }
+    const SectorSet& operator*() const { return *set_; }
     SectorSet* operator->() { return set_.get(); }
     // Written, opened, kept.
     const LoadedSector& add(const Sector& sector);

@@ -111,13 +111,14 @@ Double3 asked_place(const AmbientPlace& place) {
 // What is known but for the light outside; an interior's probe is gathered.
 Ambient indoors_of(const SectorSet& set,
                    const AmbientPlace& place,
+                   const Double3& asked,
                    const ProbeBlend& nearest,
                    Gathering& gathering) {
     Ambient ambient;
     if (nearest.count > 0)
         ambient.probe = nearest.probes[0];
     if (place.interiors)
-        ambient.interior = set.interior(place.at, place.interior_soft_m);
+        ambient.interior = set.interior(asked, place.interior_soft_m);
     const auto& [sector, index, share] = ambient.interior;
     if (share > 0)
         gathering.add_probe(*sector, sector->view.interiors[index].probe, share);
@@ -156,7 +157,8 @@ ProbeBlend blend_of_texels(const SectorSet& set,
         }
         if (!(share > 0))
             continue;
-        const ProbeBlend texel = set.nearest(centre);
+        const ProbeBlend named = set.nearest(centre);
+        const ProbeBlend texel = settings.outdoors ? set.outdoors(named) : named;
         all.count += texel.count;
         all.fallback += share * texel.fallback;
         if (texel.count == 0)
@@ -176,9 +178,10 @@ Ambient ambient_at(const SectorSet& set,
                    const AmbientPlace& place) {
     const Double3 asked = asked_place(place);
     const ProbeBlend nearest = set.nearest(asked);
-    const ProbeBlend blend = place.sampling == Sampling::nearest ? nearest : set.trilinear(asked);
+    const ProbeBlend named = place.sampling == Sampling::nearest ? nearest : set.trilinear(asked);
+    const ProbeBlend blend = place.interiors ? set.outdoors(named) : named;
     Gathering gathering(light, lamps, basis_weights(light.mode, place.normal));
-    Ambient ambient = indoors_of(set, place, nearest, gathering);
+    Ambient ambient = indoors_of(set, place, asked, nearest, gathering);
     gathering.add_blend(blend, set, asked, 1 - ambient.interior.share);
     ambient.status = status_of(blend, ambient.interior.share);
     finish(ambient, gathering, gathering.colours(), light.mode, place);
@@ -193,7 +196,7 @@ Ambient ambient_in(const Volume& volume,
     const Double3 asked = asked_place(place);
     const Volume::Sample sample = volume.sample(asked);
     Gathering gathering(light, lamps, basis_weights(light.mode, place.normal));
-    Ambient ambient = indoors_of(set, place, set.nearest(asked), gathering);
+    Ambient ambient = indoors_of(set, place, asked, set.nearest(asked), gathering);
     const float outdoors = 1 - ambient.interior.share;
     BasisColours colours = gathering.colours();
     Gathering distance(light, lamps, basis_weights(light.mode, place.normal));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <drtv/ambient.h>
+#include <drtv/day.h>
 #include <drtv/drtv.h>
 
 #include "arena.h"
@@ -44,6 +45,10 @@ inline void copy_sky(const DistantLight& from, float (*to)[4]) {
     std::memcpy(to, from.data(), sizeof from);
 }
 
+inline void copy_colours(const BasisColours& from, float (*to)[3]) {
+    std::memcpy(to, from.data(), sizeof from);
+}
+
 inline SectorSetLimits limits_of(const drtv_limits& limits) {
     return {limits.sectors, limits.probes, limits.interiors, limits.tiles};
 }
@@ -56,6 +61,7 @@ inline VolumeSettings settings_of(const drtv_volume_settings& settings) {
     result.borders = settings.borders != 0;
     result.atlas = settings.atlas != 0;
     result.blur = settings.blur != 0;
+    result.outdoors = settings.outdoors != 0;
     return result;
 }
 

@@ -94,6 +94,16 @@ void drtv_fit_sky(drtv_sky_radiance radiance, void* user, float sky[3][4]) {
     copy_sky(fit_sky(call, &caller), sky);
 }
 
+drtv_light drtv_light_of_default_day(double hour) {
+    const SceneLight from = light_of_day(default_day(), hour, RelightMode::accurate, {});
+    drtv_light light = drtv_default_light();
+    copy_sky(from.sky, light.sky);
+    std::copy_n(from.sun.irradiance.begin(), 3, light.sun_irradiance);
+    std::copy_n(from.sun.direction.begin(), 3, light.sun_direction);
+    std::copy_n(from.other_groups.begin(), 3, light.other_groups);
+    return light;
+}
+
 size_t drtv_split_light(const drtv_set* set, const drtv_lamp* lamp, drtv_share* shares) {
     const PointLight light{double3(lamp->position), float3(lamp->intensity)};
     std::array<LightShare, max_shares_per_light> split;
@@ -114,25 +124,64 @@ drtv_ambient_place drtv_default_place(void) {
     return place;
 }
 
+namespace {
+
+AmbientPlace place_of(const drtv_ambient_place& place) {
+    AmbientPlace asked;
+    asked.at = double3(place.at);
+    asked.normal = float3(place.normal);
+    asked.sampling = place.sampling == DRTV_NEAREST ? Sampling::nearest : Sampling::trilinear;
+    asked.offset_m = place.offset_m;
+    asked.interiors = place.interiors != 0;
+    asked.interior_soft_m = place.interior_soft_m;
+    return asked;
+}
+
+drtv_ambient ambient_of(const Ambient& found) {
+    drtv_ambient ambient{};
+    ambient.status = static_cast<std::int32_t>(found.status);
+    ambient.interior = found.interior.share;
+    copy_colours(found.colours, ambient.basis_colours);
+    std::copy_n(found.colour.begin(), 3, ambient.colour);
+    return ambient;
+}
+
+}  // namespace
+
 void drtv_ambient_at(const drtv_set* set,
                      const drtv_light* light,
                      const drtv_share* shares,
                      size_t share_count,
                      const drtv_ambient_place* place,
                      drtv_ambient* ambient) {
-    AmbientPlace asked;
-    asked.at = double3(place->at);
-    asked.normal = float3(place->normal);
-    asked.sampling = place->sampling == DRTV_NEAREST ? Sampling::nearest : Sampling::trilinear;
-    asked.offset_m = place->offset_m;
-    asked.interiors = place->interiors != 0;
-    asked.interior_soft_m = place->interior_soft_m;
-    const Ambient found = ambient_at(*set, Light(*light).light, shares_of(shares, share_count), asked);
-    *ambient = {};
-    ambient->status = static_cast<std::int32_t>(found.status);
-    ambient->interior = found.interior.share;
-    std::memcpy(ambient->basis_colours, found.colours.data(), sizeof found.colours);
-    std::copy_n(found.colour.begin(), 3, ambient->colour);
+    const Light of(*light);
+    *ambient = ambient_of(ambient_at(*set, of.light, shares_of(shares, share_count), place_of(*place)));
+}
+
+void drtv_ambient_in(const drtv_volume* volume,
+                     const drtv_set* set,
+                     const drtv_light* light,
+                     const drtv_share* shares,
+                     size_t share_count,
+                     const drtv_ambient_place* place,
+                     drtv_ambient* ambient) {
+    const Light of(*light);
+    *ambient =
+        ambient_of(ambient_in(*volume, *set, of.light, shares_of(shares, share_count), place_of(*place)));
+}
+
+int drtv_interior_at(const drtv_set* set, const double place[3], float soft_m, drtv_interior* interior) {
+    const InteriorShare found = set->interior(double3(place), soft_m);
+    *interior = {};
+    if (found.sector == nullptr)
+        return 0;
+    const SectorView& view = found.sector->view;
+    *interior = {{view.i, view.j}, view.interiors[found.index].probe, found.share};
+    return 1;
+}
+
+float drtv_sky_factor(const drtv_set* set, const double place[3]) {
+    return set->sky_factor(double3(place));
 }
 
 void drtv_shade_ambient(int mode, const float basis_colours[4][3], const float normal[3], float colour[3]) {

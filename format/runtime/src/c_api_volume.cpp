@@ -38,6 +38,22 @@ void drtv_relit_finish_fade(drtv_relit* relit) {
     relit->finish_fade();
 }
 
+int drtv_relit_colours(const drtv_relit* relit,
+                       const drtv_set* set,
+                       drtv_sector_id sector,
+                       uint32_t probe,
+                       float basis_colours[4][3]) {
+    const LoadedSector* loaded = set->find({sector.i, sector.j});
+    if (loaded == nullptr || !relit->is_relit(*loaded) || probe >= loaded->view.probe_count)
+        return 0;
+    copy_colours(relit->colours(*loaded, probe), basis_colours);
+    return 1;
+}
+
+void drtv_relit_fallback(const drtv_relit* relit, float basis_colours[4][3]) {
+    copy_colours(relit->fallback(), basis_colours);
+}
+
 float drtv_relit_largest(const drtv_relit* relit, const drtv_set* set) {
     float largest = relit->largest_fallback();
     for (std::uint32_t slot = 0; slot < set->limits().sectors; ++slot) {

@@ -1,5 +1,6 @@
 #include <drtv/local_lights.h>
 
+#include "search.h"
 #include "share_batches.h"
 #include "simd.h"
 #include "vector.h"
@@ -11,37 +12,26 @@
 namespace drtv {
 namespace {
 
-// Of the factor for a pair: about a probe's height over what it lights.
-constexpr double near_m = 1.5;
+// Where automatic probes stand over the ground.
+constexpr double probe_height_m = 1;
+// A lamp is held to be no lower over the ground: there its bounce is bound too.
+constexpr double lowest_lamp_m = 0.25;
+// Rooms keep light that flat ground does not: by what a lamp may be brighter than its source.
+constexpr double largest_factor = 3;
 
-Double3 place_of(const SectorView& sector, std::size_t p) {
-    const StoredPosition& stored = sector.positions[p];
-    constexpr std::int64_t side = sector_size_m * position_units_per_m;
-    const std::int64_t x = sector.i * side + stored.position[0];
-    const std::int64_t y = sector.j * side + stored.position[1];
-    const std::int64_t z = sector.z_origin_units + (std::int64_t{stored.position[2]} << sector.z_shift);
-    const auto metres = [](std::int64_t units) { return static_cast<double>(units) / position_units_per_m; };
-    return {metres(x), metres(y), metres(z)};
-}
-
-double squared_distance(const Double3& a, const Double3& b) {
-    const double x = a[0] - b[0];
-    const double y = a[1] - b[1];
-    const double z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
-
-bool is_named_by_interior(const SectorView& sector, std::uint8_t probe) {
-    return std::any_of(sector.interiors.begin(), sector.interiors.end(), [&](const StoredInterior& interior) {
-        return interior.probe == probe;
-    });
+// What a lamp at a height over flat ground brings by bounce to a probe at probe_height_m over it, up to a
+// constant. Both kernels are Poisson's, and convolve to that of both heights' sum; the distance between the
+// two holds the heights' difference.
+double ground_bounce(double squared_distance_m2, double lamp_m) {
+    const double squared = squared_distance_m2 + 4 * lamp_m * probe_height_m;
+    return (lamp_m + probe_height_m) / (squared * std::sqrt(squared));
 }
 
 LightShare share_of(const PointLight& light, const SectorView& sector, std::uint8_t probe, float share) {
     LightShare part;
     part.sector = {sector.i, sector.j};
     part.probe = probe;
-    part.source = place_of(sector, probe);
+    part.source = place_m(sector, probe);
     part.light = light.position;
     for (std::size_t c = 0; c < channel_count; ++c)
         part.intensity[c] = light.intensity[c] * share;
@@ -53,12 +43,9 @@ std::optional<std::size_t> find_source(const SectorView& sector, SectorId of, st
     const std::int64_t di = std::int64_t{of.i} - sector.i;
     const std::int64_t dj = std::int64_t{of.j} - sector.j;
     const std::span<const LocalSource> sources = sector.local_sources;
-    const auto found = std::find_if(sources.begin(), sources.end(), [&](const LocalSource& s) {
-        return s.probe == probe && s.di == di && s.dj == dj;
-    });
-    if (found == sources.end())
-        return std::nullopt;
-    return static_cast<std::size_t>(found - sources.begin());
+    const std::size_t n = index_where(
+        sources, [&](const LocalSource& s) { return s.probe == probe && s.di == di && s.dj == dj; });
+    return n < sources.size() ? std::optional(n) : std::nullopt;
 }
 
 // What a light at one probe brings to another by bounce, all channels and directions; below 0 where the files
@@ -81,21 +68,18 @@ float bounce_between(const ProbeShare& receiver, const ProbeShare& source) {
 }
 
 // How far two probes see the same space, 0 to 1, by what they send each other: a quarter or more of what they
-// would over flat ground counts as all of it. There a light at a height h brings a probe at the same height,
-// at a distance d, (1 + (d / 2 h)^2)^(-3/2) of what it brings the probe at its own place: both kernels are
-// Poisson's, and convolve to one of twice the height. 1 where the files do not say. `own`: the product of
-// what each brings to itself.
+// would over flat ground counts as all of it. 1 where the files do not say. `own`: the product of what each
+// brings to itself.
 float sees(const ProbeShare& a, const ProbeShare& b, float own) {
-    constexpr double twice_height_m = 2;
     constexpr float enough = 0.25f;
     const float there = bounce_between(a, b);
     const float back = bounce_between(b, a);
     if (!(own > 0) || there < 0 || back < 0)
         return 1;
-    const Double3 place_a = place_of(a.sector->view, a.probe);
-    const Double3 place_b = place_of(b.sector->view, b.probe);
-    const double ratio = squared_distance(place_a, place_b) / (twice_height_m * twice_height_m);
-    const auto flat = static_cast<float>(1 / ((1 + ratio) * std::sqrt(1 + ratio)));
+    const Double3 place_a = place_m(a.sector->view, a.probe);
+    const Double3 place_b = place_m(b.sector->view, b.probe);
+    const double apart = ground_bounce(squared_distance(place_a, place_b), probe_height_m);
+    const auto flat = static_cast<float>(apart / ground_bounce(0, probe_height_m));
     return std::min(1.0f, std::max(there, back) / (std::sqrt(own) * flat * enough));
 }
 
@@ -125,6 +109,14 @@ void keep_to_one_side(std::span<ProbeShare> probes) {
     }
 }
 
+// How much more a lamp itself brings than its share at the source, if all stood over flat ground.
+float as_seen_from(const Double3& receiver, const LightShare& share) {
+    const double lamp_m = std::max(lowest_lamp_m, probe_height_m + share.light[2] - share.source[2]);
+    const double from_lamp = ground_bounce(squared_distance(share.light, receiver), lamp_m);
+    const double from_source = ground_bounce(squared_distance(share.source, receiver), probe_height_m);
+    return static_cast<float>(std::min(largest_factor, from_lamp / from_source));
+}
+
 bool shines(const PointLight& light) {
     const Float3& c = light.intensity;
     const bool placed = std::isfinite(light.position[0]) && std::isfinite(light.position[1]) &&
@@ -142,16 +134,10 @@ std::size_t split_light(const SectorSet& set, const PointLight& light, std::span
         shares[0] = share_of(light, sector, sector.interiors[room.index].probe, 1);
         return 1;
     }
-    ProbeBlend blend = set.trilinear(light.position);
-    float sum = 0;
-    std::size_t count = 0;
-    for (std::size_t n = 0; n < blend.count; ++n) {
-        const ProbeShare& probe = blend.probes[n];
-        if (is_named_by_interior(probe.sector->view, probe.probe))
-            continue;
-        blend.probes[count++] = probe;
-    }
+    ProbeBlend blend = set.outdoors(set.trilinear(light.position));
+    const std::size_t count = blend.count;
     keep_to_one_side({blend.probes.data(), count});
+    float sum = 0;
     for (std::size_t n = 0; n < count; ++n)
         sum += blend.probes[n].share;
     for (std::size_t n = 0; n < count; ++n) {
@@ -172,7 +158,7 @@ LocalRelighter::LocalRelighter(const LoadedSector& sector, std::span<const Light
 }
 
 void LocalRelighter::add_to(BasisColours& colours, std::size_t p) const {
-    const Double3 receiver = place_of(*sector_, p);
+    const Double3 receiver = place_m(*sector_, p);
     std::array<Lanes, channel_count> sums = {splat(0), splat(0), splat(0)};
     bool any = false;
     for (std::size_t n = 0; n < count_; ++n) {
@@ -181,9 +167,7 @@ void LocalRelighter::add_to(BasisColours& colours, std::size_t p) const {
             continue;
         any = true;
         const LightShare& share = *sources_[n].share;
-        const double from_source = squared_distance(share.source, receiver) + near_m * near_m;
-        const double from_light = squared_distance(share.light, receiver) + near_m * near_m;
-        const float factor = static_cast<float>(std::min(1.0, from_source / from_light));
+        const float factor = as_seen_from(receiver, share);
         const float per_code = scale / fixed_point_max * factor;
         for (std::size_t c = 0; c < channel_count; ++c)
             sums[c] = sums[c] + load_codes((*codes)[c].data()) * splat(per_code * share.intensity[c]);

@@ -1,6 +1,7 @@
 #include <drtv/relit_probes.h>
 
 #include "arena.h"
+#include "search.h"
 #include "share_batches.h"
 
 #include <algorithm>
@@ -24,9 +25,8 @@ BasisColours mixed(const BasisColours& now, const BasisColours& next, float shar
 
 // Whether a share is near enough to bring something.
 bool has_source(const SectorView& sector, std::span<const LightShare> shares) {
-    return std::any_of(shares.begin(), shares.end(), [&](const LightShare& share) {
-        return is_beside(sector, share.sector);
-    });
+    const auto is_near = [&](const LightShare& share) { return is_beside(sector, share.sector); };
+    return index_where(shares, is_near) < shares.size();
 }
 
 float largest_of(const BasisColours& colours) {

@@ -2,9 +2,12 @@
 #include <drtv/sector_set.h>
 
 #include "columns.h"
+#include "vector.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace drtv {
 namespace {
@@ -173,6 +176,46 @@ InteriorShare SectorSet::interior(const Double3& world_m, float soft_m) const {
         }
     }
     return best;
+}
+
+void SectorSet::find_outdoor_probes(const LoadedSector& sector) {
+    const SectorView& view = sector.view;
+    const auto outdoor = outdoor_probes_.subspan(sector.first_probe, view.probe_count);
+    const auto is_indoors = [&](std::size_t p) {
+        for (std::uint32_t n = 0; n < view.interiors.size(); ++n) {
+            const StoredInterior& interior = view.interiors[n];
+            const Double3 place = place_m(view, p);
+            if (interior.probe == p || (is_near(interior_bounds_[sector.first_interior + n], place, 0) &&
+                                        is_inside(view, interior, place)))
+                return true;
+        }
+        return false;
+    };
+    std::array<bool, max_probes> indoors{};
+    for (std::size_t p = 0; p < view.probe_count; ++p)
+        indoors[p] = is_indoors(p);
+    for (std::size_t p = 0; p < view.probe_count; ++p) {
+        std::size_t nearest = p;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t q = 0; indoors[p] && q < view.probe_count; ++q) {
+            const double distance = squared_distance(place_m(view, p), place_m(view, q));
+            if (indoors[q] || distance >= least)
+                continue;
+            least = distance;
+            nearest = q;
+        }
+        outdoor[p] = static_cast<std::uint8_t>(nearest);
+    }
+}
+
+ProbeBlend SectorSet::outdoors(const ProbeBlend& blend) const {
+    Blend outdoors;
+    for (std::size_t n = 0; n < blend.count; ++n) {
+        const ProbeShare& probe = blend.probes[n];
+        outdoors.add(probe.sector, outdoor_probes(*probe.sector)[probe.probe], probe.share);
+    }
+    outdoors.add(nullptr, no_probe, blend.fallback);
+    return outdoors.finish(blend.status);
 }
 
 float SectorSet::sky_factor(const Double3& world_m) const {

@@ -1,6 +1,7 @@
 #include <drtv/sector_set.h>
 
 #include "arena.h"
+#include "search.h"
 
 #include <algorithm>
 #include <limits>
@@ -48,11 +49,16 @@ struct SetMemory {
     std::size_t slot_table;
     std::size_t tile_table;
     std::size_t interiors;
+    std::size_t probes;
 };
 
 SetMemory counts_of(const SectorSetLimits& limits) {
-    return {
-        limits.sectors, limits.tiles, table_size(limits.sectors), table_size(limits.tiles), limits.interiors};
+    return {limits.sectors,
+            limits.tiles,
+            table_size(limits.sectors),
+            table_size(limits.tiles),
+            limits.interiors,
+            limits.probes};
 }
 
 }  // namespace
@@ -75,7 +81,7 @@ std::size_t SectorSet::memory_bytes(const SectorSetLimits& limits) {
     const SetMemory counts = counts_of(limits);
     return Arena::bytes_of<Slot>(counts.slots) + Arena::bytes_of<TableEntry>(counts.slot_table) +
            Arena::bytes_of<TileEntry>(counts.tiles) + Arena::bytes_of<TableEntry>(counts.tile_table) +
-           Arena::bytes_of<InteriorBounds>(counts.interiors);
+           Arena::bytes_of<InteriorBounds>(counts.interiors) + Arena::bytes_of<std::uint8_t>(counts.probes);
 }
 
 SectorSet::SectorSet(std::span<std::byte> memory, const SectorSetLimits& limits) : limits_(limits) {
@@ -86,6 +92,7 @@ SectorSet::SectorSet(std::span<std::byte> memory, const SectorSetLimits& limits)
     tiles_ = arena.take<TileEntry>(counts.tiles);
     tile_table_ = arena.take<TableEntry>(counts.tile_table);
     interior_bounds_ = arena.take<InteriorBounds>(counts.interiors);
+    outdoor_probes_ = arena.take<std::uint8_t>(counts.probes);
 }
 
 const LoadedSector* SectorSet::at(std::uint32_t slot) const {
@@ -136,25 +143,25 @@ LoadStatus SectorSet::load(std::span<const std::uint8_t> file, const LoadedSecto
         entry_of(slot_table_, id, [&](std::uint32_t n) { return id_of(slots_[n].sector.view) == id; });
     if (entry.load(std::memory_order_relaxed) != 0)
         return LoadStatus::already_there;
-    const auto slot = std::find_if(slots_.begin(), slots_.end(), [](const Slot& s) {
-        return s.state.load(std::memory_order_relaxed) == SlotState::free;
-    });
+    const std::size_t index = index_where(
+        slots_, [](const Slot& s) { return s.state.load(std::memory_order_relaxed) == SlotState::free; });
     const auto interiors = static_cast<std::uint32_t>(view.interiors.size());
     const std::uint32_t first_probe =
         free_run(static_cast<std::uint32_t>(view.probe_count), limits_.probes, false);
     const std::uint32_t first_interior = free_run(interiors, limits_.interiors, true);
-    if (slot == slots_.end() || first_probe == none || first_interior == none)
+    if (index == slots_.size() || first_probe == none || first_interior == none)
         return LoadStatus::no_room;
 
-    const auto index = static_cast<std::uint32_t>(slot - slots_.begin());
-    slot->sector = {view, index, first_probe, first_interior, ++loads_};
+    Slot& slot = slots_[index];
+    slot.sector = {view, static_cast<std::uint32_t>(index), first_probe, first_interior, ++loads_};
     for (std::uint32_t n = 0; n < interiors; ++n)
         interior_bounds_[first_interior + n] = bounds_of(view, view.interiors[n]);
+    find_outdoor_probes(slot.sector);
     keep_tile(sky_tile_of(view));
-    slot->state.store(SlotState::loaded, std::memory_order_release);
-    entry.store(index + 1, std::memory_order_release);
+    slot.state.store(SlotState::loaded, std::memory_order_release);
+    entry.store(slot.sector.slot + 1, std::memory_order_release);
     if (loaded != nullptr)
-        *loaded = &slot->sector;
+        *loaded = &slot.sector;
     return LoadStatus::loaded;
 }
 
@@ -201,11 +208,11 @@ void SectorSet::keep_tile(const SkyTile& tile) {
     const std::uint32_t value = entry.load(std::memory_order_relaxed);
     if (value != 0 && tiles_[value - 1].tile == tile)
         return;
-    const auto free = std::find_if(tiles_.begin(), tiles_.end(), [](const TileEntry& t) { return !t.used; });
-    if (free == tiles_.end())
+    const std::size_t free = index_where(tiles_, [](const TileEntry& t) { return !t.used; });
+    if (free == tiles_.size())
         return;
-    *free = {tile, true};
-    entry.store(static_cast<std::uint32_t>(free - tiles_.begin()) + 1, std::memory_order_release);
+    tiles_[free] = {tile, true};
+    entry.store(static_cast<std::uint32_t>(free) + 1, std::memory_order_release);
 }
 
 const SkyTile* SectorSet::tile(SectorId id) const {

@@ -1,4 +1,4 @@
-// Vectors of three floats.
+// Vectors of three numbers.
 #pragma once
 
 #include <drtv/conventions.h>
@@ -9,6 +9,13 @@ namespace drtv {
 
 [[nodiscard]] inline bool is_finite(const Float3& v) {
     return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+[[nodiscard]] inline double squared_distance(const Double3& a, const Double3& b) {
+    const double x = a[0] - b[0];
+    const double y = a[1] - b[1];
+    const double z = a[2] - b[2];
+    return x * x + y * y + z * z;
 }
 
 [[nodiscard]] inline float dot(const Float3& a, const Float3& b) {

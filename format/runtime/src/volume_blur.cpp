@@ -22,7 +22,7 @@ BasisColours colours_of(const Volume::State& state, const RelitProbes& relit, co
     const std::uint8_t p = under.sector->view.grid->cells[cell_x + grid_size * (cell_y + grid_size * cell_z)];
     if (p >= under.sector->view.probe_count)
         return fallback_at(state, under, place);
-    return relit.colours(*under.sector, p);
+    return relit.colours(*under.sector, under.shown_probe(p));
 }
 
 void store_texel(const BasisColours& colours, float* to) {

@@ -53,7 +53,12 @@ struct Volume::State {
         SectorId id;
         const LoadedSector* sector = nullptr;  // null: the fallback
         const SkyTile* tile = nullptr;
-        const std::uint8_t* cells_z = nullptr;  // [z], of its grid
+        const std::uint8_t* cells_z = nullptr;         // [z], of its grid
+        const std::uint8_t* outdoor_probes = nullptr;  // [p]; null: each for itself
+
+        [[nodiscard]] std::size_t shown_probe(std::size_t p) const {
+            return outdoor_probes == nullptr ? p : outdoor_probes[p];
+        }
     };
     // Of which load, and which heights, a row of `cells_z` is.
     struct CellsOf {

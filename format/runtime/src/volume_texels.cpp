@@ -23,8 +23,10 @@ void encode_sectors(Volume::State& state, const RelitProbes& relit) {
         const std::uint64_t stamp = relit.stamp(sector);
         if (encoded.load == sector.load && encoded.stamp == stamp)
             continue;
-        for (std::size_t p = 0; p < sector.view.probe_count; ++p)
-            texels[sector.first_probe + p] = encoder.encode<Texel>(texel_colours(relit.colours(sector, p)));
+        for (std::size_t p = 0; p < sector.view.probe_count; ++p) {
+            const BasisColours colours = relit.colours(sector, under.shown_probe(p));
+            texels[sector.first_probe + p] = encoder.encode<Texel>(texel_colours(colours));
+        }
         encoded = {sector.load, stamp};
     }
 }
@@ -78,6 +80,7 @@ void look_under(Volume::State& state, const SectorSet& set, const RelitProbes& r
         under.sector = sector != nullptr && relit.is_relit(*sector) ? sector : nullptr;
         if (under.sector == nullptr)
             continue;
+        under.outdoor_probes = state.settings.outdoors ? set.outdoor_probes(*sector).data() : nullptr;
         const std::size_t lasting = state.lasting_index(under.id);
         Volume::State::CellsOf& of = state.cells_of[lasting];
         std::uint8_t* cells = state.cells_z.data() + lasting * size_z;

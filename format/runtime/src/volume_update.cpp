@@ -1,9 +1,11 @@
 // Which texels an update writes.
 #include "columns.h"
+#include "search.h"
 #include "volume_state.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace drtv {
@@ -93,17 +95,14 @@ void add_changes(Volume::State& state, const RelitProbes& relit, Work& work) {
     const std::int32_t reach = state.settings.blur ? 1 : 0;
     const auto range_of = [&](std::size_t axis, std::int32_t sector) {
         const auto& places = state.places[axis];
-        const auto low = std::find_if(
-            places.begin(), places.end(), [&](const Volume::State::Place& p) { return p.sector == sector; });
-        const auto high = std::find_if(
-            low, places.end(), [&](const Volume::State::Place& p) { return p.sector != sector; });
-        return std::pair(static_cast<std::int32_t>(low - places.begin()),
-                         static_cast<std::int32_t>(high - places.begin()));
+        const auto is_there = [&](const Volume::State::Place& p) { return p.sector == sector; };
+        const std::size_t low = index_where(places, is_there);
+        const std::size_t high = index_where(places, std::not_fn(is_there), low);
+        return std::pair(static_cast<std::int32_t>(low), static_cast<std::int32_t>(high));
     };
+    const SectorId last{state.places[0].back().sector, state.places[1].back().sector};
     for (const Volume::State::Under& under : state.under) {
-        const auto [x0, x1] = range_of(0, under.id.i);
-        const auto [y0, y1] = range_of(1, under.id.j);
-        if (x0 == x1 || y0 == y1)
+        if (under.id.i > last.i || under.id.j > last.j)
             continue;  // room for more sectors than lie there
         Volume::State::Shown& shown = state.shown[state.lasting_index(under.id)];
         const Volume::State::Shown now = shown_of(under, relit);
@@ -114,6 +113,8 @@ void add_changes(Volume::State& state, const RelitProbes& relit, Work& work) {
         shown = now;
         if (!was_there)
             continue;
+        const auto [x0, x1] = range_of(0, under.id.i);
+        const auto [y0, y1] = range_of(1, under.id.j);
         const Int3& size = state.settings.size;
         work.add({{std::max(x0 - reach, 0), std::max(y0 - reach, 0), 0},
                   {std::min(x1 + reach, size[0]), std::min(y1 + reach, size[1]), size[2]}});

@@ -18,14 +18,20 @@
 
 namespace drtv {
 
+// What a shader should take: less finds probes behind thin walls, more passes the far side of an alley
+// (docs/measurements.md).
+inline constexpr float volume_offset_m = 1;
+
 enum class Sampling : std::uint8_t { nearest, trilinear };
 
 struct AmbientPlace {
     Double3 at{};            // metres
     Float3 normal{0, 0, 1};  // unit
     Sampling sampling = Sampling::trilinear;
-    float offset_m = 0;  // probes are asked so far along the normal; interiors at the place itself
-    bool interiors = true;
+    // Probes and interiors are asked so far along the normal: by volume_offset_m, or a surface finds what is
+    // behind it.
+    float offset_m = 0;
+    bool interiors = true;  // and what is in none is lit by outdoors' probes (SectorSet::outdoors)
     float interior_soft_m = 1;
 };
 
@@ -56,6 +62,7 @@ struct Ambient {
                                  const AmbientPlace& place);
 
 // The same as a shader finds it in a volume that was filled with this light: `place.sampling` does not count.
+// REQUIRES: the volume's `outdoors` is place.interiors.
 // Outside the window, and fading over its last texel, there is an open sky times sky_factor (slide 57);
 // status and parts say so. Parts are not encoded, so that they add up to the colour but for what the texels
 // round.

@@ -1,7 +1,7 @@
 /* The runtime for C11 and for whatever calls C: Unity (P/Invoke), Rust, Python, Lua. It is libdrtv, a shared
  * library that shows these names alone, over the C++ of drtv/sector_set.h, relit_probes.h, volume.h,
  * ambient.h and light.h; what a call does, which units it takes and which calls may run at once stands there,
- * under the same names.
+ * under the same names. Long because C callers include one header.
  *
  * Memory is the caller's: ask for the size, hand in a piece that starts at a multiple of 16, free it when the
  * handle is no longer used. There is nothing else to free. Nothing is allocated after that, but for the text
@@ -104,6 +104,8 @@ DRTV_API void drtv_gradient_sky(const float zenith[3],
                                 float sky[3][4]);
 typedef void (*drtv_sky_radiance)(const float direction[3], float radiance[3], void* user);
 DRTV_API void drtv_fit_sky(drtv_sky_radiance radiance, void* user, float sky[3][4]);
+/* Of drtv::default_day, accurate. For a day of your own, fill a light at each hour. */
+DRTV_API drtv_light drtv_light_of_default_day(double hour);
 
 typedef struct drtv_lamp {
     double position[3];
@@ -140,6 +142,14 @@ DRTV_API int drtv_relit_sector(drtv_relit* relit,
                                size_t share_count);
 DRTV_API void drtv_relit_set_fade(drtv_relit* relit, float share);
 DRTV_API void drtv_relit_finish_fade(drtv_relit* relit);
+/* What is shown; 0 where the sector is not relit or has no such probe. */
+DRTV_API int drtv_relit_colours(const drtv_relit* relit,
+                                const drtv_set* set,
+                                drtv_sector_id sector,
+                                uint32_t probe,
+                                float basis_colours[4][3]);
+/* An open sky's; times drtv_sky_factor. */
+DRTV_API void drtv_relit_fallback(const drtv_relit* relit, float basis_colours[4][3]);
 /* Of all that is relit and of the fallback, for drtv_suggest_scale. */
 DRTV_API float drtv_relit_largest(const drtv_relit* relit, const drtv_set* set);
 
@@ -155,6 +165,7 @@ typedef struct drtv_volume_settings {
     int32_t borders;
     int32_t atlas;
     int32_t blur;
+    int32_t outdoors;
 } drtv_volume_settings;
 DRTV_API drtv_volume_settings drtv_default_volume(void);
 
@@ -220,6 +231,25 @@ DRTV_API void drtv_ambient_at(const drtv_set* set,
                               size_t share_count,
                               const drtv_ambient_place* place,
                               drtv_ambient* ambient);
+/* The same from a volume; the place's sampling does not count. */
+DRTV_API void drtv_ambient_in(const drtv_volume* volume,
+                              const drtv_set* set,
+                              const drtv_light* light,
+                              const drtv_share* shares,
+                              size_t share_count,
+                              const drtv_ambient_place* place,
+                              drtv_ambient* ambient);
+typedef struct drtv_interior {
+    drtv_sector_id sector; /* of its probe */
+    uint32_t probe;
+    float share;
+} drtv_interior;
+/* 0 where no interior has a share; `interior` then is all 0. */
+DRTV_API int drtv_interior_at(const drtv_set* set,
+                              const double place[3],
+                              float soft_m,
+                              drtv_interior* interior);
+DRTV_API float drtv_sky_factor(const drtv_set* set, const double place[3]);
 DRTV_API void drtv_shade_ambient(int mode,
                                  const float basis_colours[4][3],
                                  const float normal[3],

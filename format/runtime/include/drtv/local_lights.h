@@ -45,7 +45,8 @@ inline constexpr std::size_t max_shares_per_light = 8;
 //
 //     sees_kj = min(1, max(R_kj, R_jk) / (sqrt(R_kk R_jj) (1 + d^2 / 4 m^2)^(-3/2) / 4))
 //
-// or 1 where the files do not say: no local transfer, or nothing brought to themselves. A lamp inside an
+// where (...)^(-3/2) is what flat ground leaves of it; 1 where the files do not say: no local transfer, or
+// nothing brought to themselves. A lamp inside an
 // interior (with a softness of 0) goes to the interior's probe alone; none outside goes to a probe that an
 // interior names. Shares add up to 1 over the probes there are; nothing where there is none, or where the
 // lamp is not finite or dark. Gives how many it wrote. REQUIRES: room for max_shares_per_light.
@@ -62,9 +63,10 @@ class LocalRelighter {
     // several.
     LocalRelighter(const LoadedSector& sector, std::span<const LightShare> shares);
 
-    // Adds what probe p gets. A lamp beside its source shines into fewer faces from near: each pair takes the
-    // factor min(1, (|source - p|^2 + a^2) / (|lamp - p|^2 + a^2)), a = 1.5 m. REQUIRES: p <
-    // view.probe_count.
+    // Adds what probe p gets. The lamp does not stand where its source does: each pair takes the factor
+    // min(3, B(|lamp - p|, h) / B(|source - p|, 1 m)), where B(d, h) = (h + 1 m) (d^2 + 4 h 1 m)^(-3/2) is
+    // what flat ground sends back of a lamp h above it to a probe 1 m above it, and h = max(1/4 m, 1 m +
+    // lamp.z - source.z). REQUIRES: p < view.probe_count.
     void add_to(BasisColours& colours, std::size_t p) const;
     // True where nothing is added to any probe.
     [[nodiscard]] bool empty() const { return count_ == 0; }

@@ -128,6 +128,16 @@ class SectorSet {
     // (by its centre, j, i), then to the first in the file. With a softness of 0, inside is 1 and outside 0.
     [[nodiscard]] InteriorShare interior(const Double3& world_m, float soft_m = 1) const;
 
+    // Probes that stand inside an interior, or that one names, do not light what is outside. Where a cell
+    // names one, the probe of its sector that stands nearest to it and is none of them does (ties go to the
+    // first); all others, and all where each is one, stand for themselves. Probe by probe; interiors of other
+    // sectors do not count.
+    [[nodiscard]] std::span<const std::uint8_t> outdoor_probes(const LoadedSector& sector) const {
+        return outdoor_probes_.subspan(sector.first_probe, sector.view.probe_count);
+    }
+    // A blend with these: what lights a place that is in no interior.
+    [[nodiscard]] ProbeBlend outdoors(const ProbeBlend& blend) const;
+
     // What is left of the open sky's ambient light (drtv/sky_tile.h), between the four nearest columns. Of
     // sectors without a tile: 1.
     [[nodiscard]] float sky_factor(const Double3& world_m) const;
@@ -150,6 +160,7 @@ class SectorSet {
     using TableEntry = std::atomic<std::uint32_t>;  // 0 empty, else an index plus 1
 
     [[nodiscard]] std::uint32_t free_run(std::uint32_t length, std::uint32_t limit, bool interiors) const;
+    void find_outdoor_probes(const LoadedSector& sector);
     void keep_tile(const SkyTile& tile);
     [[nodiscard]] TableEntry& tile_entry(SectorId id) const;
 
@@ -160,6 +171,7 @@ class SectorSet {
     std::span<TableEntry> tile_table_;
     std::span<const SkyTile> file_tiles_;
     std::span<InteriorBounds> interior_bounds_;
+    std::span<std::uint8_t> outdoor_probes_;
     std::uint64_t loads_ = 0;
 };
 

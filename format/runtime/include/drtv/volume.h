@@ -41,6 +41,8 @@ struct VolumeSettings {
     bool borders = true;
     // One texture, the three over one another along z, for one sampler. REQUIRES: borders.
     bool atlas = false;
+    // Interiors' probes are not shown (SectorSet::outdoor_probes): for a shader that blends them itself.
+    bool outdoors = false;
     // (1 2 1) / 4 along each axis, on linear colours; at the window's sides the last texel counts twice.
     bool blur = false;
 };

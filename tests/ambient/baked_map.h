@@ -1,0 +1,33 @@
+// A map baked in this process and loaded as a game loads it.
+#pragma once
+
+#include "bakerd/bake/settings.h"
+#include "bakerd/map/ground.h"
+#include "bakerd/map/map.h"
+#include "tests/map/gltf_builder.h"
+#include "tests/runtime/sets.h"
+
+#include <memory>
+#include <vector>
+
+namespace drtv::test {
+
+class BakedMap {
+  public:
+    // All of the map's sectors, or those asked for.
+    BakedMap(const GltfBuilder& builder, const bake::Settings& settings,
+             const std::vector<map::SectorCoordinate>& sectors = {});
+
+    [[nodiscard]] const map::Map& map() const { return *map_; }
+    [[nodiscard]] const SectorSet& set() const { return *set_; }
+    [[nodiscard]] const std::vector<const LoadedSector*>& sectors() const { return sectors_; }
+    [[nodiscard]] const std::vector<Sector>& files() const { return files_; }
+
+  private:
+    std::shared_ptr<const map::Map> map_;
+    std::vector<Sector> files_;
+    OwnedSet set_;
+    std::vector<const LoadedSector*> sectors_;
+};
+
+}  // namespace drtv::test
