@@ -1,8 +1,6 @@
-// What the talk shows on its slides (GDC 2012; 7 to 12, 53, 55 and 58), on a map like its test scene: green
-// terrain, a red and a blue wall, white spheres, a hut, a jungle.
-#include "tests/ambient/baked_map.h"
+// What the talk shows on its slides (GDC 2012; 7 to 12, 53, 55 and 58), on a map like its test scene.
+#include "tests/ambient/talk_scene.h"
 #include "tests/ambient/moments.h"
-#include "tests/ambient/scenes.h"
 #include "tests/reference/reference_ambient.h"
 
 #include <drtv/ambient.h>
@@ -12,110 +10,10 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace drtv::test {
 namespace {
-
-constexpr glm::vec3 green(0.15f, 0.5f, 0.1f);
-constexpr glm::vec3 red(0.8f, 0.1f, 0.05f);
-constexpr glm::vec3 blue(0.05f, 0.1f, 0.8f);
-constexpr glm::vec3 white(0.7f);
-constexpr float sphere_radius_m = 1;
-constexpr glm::vec3 beside_red(16, 32, 2);
-constexpr glm::vec3 beside_blue(36, 32, 2);
-constexpr glm::vec3 hut_low(44, 8, 0);
-constexpr glm::vec3 hut_high(50, 14, 3);
-constexpr float white_wall_x = 84;
-constexpr glm::vec3 under_leaves(156, 32, 0.5f);
-constexpr glm::vec3 in_clearing(108, 56, 0.5f);
-
-// Rolling by half a metre.
-Shape terrain(float low, float high) {
-    constexpr int steps = 40;
-    Shape shape;
-    const auto corner = [&](int x, int y) {
-        const float u = low + (high - low) * static_cast<float>(x) / steps;
-        const float v = low + (high - low) * static_cast<float>(y) / steps;
-        return glm::vec3(u, v, x % 8 == 4 && y % 8 == 4 ? 0.0f : -0.5f);
-    };
-    for (int y = 0; y < steps; ++y) {
-        for (int x = 0; x < steps; ++x) {
-            const auto first = static_cast<std::uint32_t>(shape.positions.size());
-            shape.positions.insert(shape.positions.end(),
-                                   {corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)});
-            for (const std::uint32_t n : {0u, 1u, 2u, 0u, 2u, 3u})
-                shape.indices.push_back(first + n);
-        }
-    }
-    return shape;
-}
-
-Shape sphere(const glm::vec3& middle, float radius_m) {
-    constexpr std::uint32_t rings = 8;
-    constexpr std::uint32_t around = 16;
-    Shape shape;
-    for (std::uint32_t r = 0; r <= rings; ++r) {
-        const double theta = std::numbers::pi * r / rings;
-        for (std::uint32_t s = 0; s < around; ++s) {
-            const double phi = 2 * std::numbers::pi * s / around;
-            const glm::dvec3 out(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                                 std::cos(theta));
-            shape.positions.push_back(middle + radius_m * glm::vec3(out));
-        }
-    }
-    for (std::uint32_t r = 0; r < rings; ++r) {
-        for (std::uint32_t s = 0; s < around; ++s) {
-            const std::uint32_t a = r * around + s;
-            const std::uint32_t b = r * around + (s + 1) % around;
-            for (const std::uint32_t n : {a, a + around, b, b, a + around, b + around})
-                shape.indices.push_back(n);
-        }
-    }
-    return shape;
-}
-
-SceneSource talk_scene() {
-    SceneSource scene;
-    scene.add(terrain(-200, 400), green);
-    scene.add_box({11, 20, -1}, {12, 44, 7}, red);
-    scene.add_box({40, 20, -1}, {41, 44, 7}, blue);
-    for (const glm::vec3& middle : {beside_red, beside_blue, glm::vec3(26, 32, 2)})
-        scene.add(sphere(middle, sphere_radius_m), white);
-    scene.add_box({white_wall_x, 24, -1}, {white_wall_x + 1, 40, 6}, white);
-    // The hut: walls of 0.3 m, closed but for a door of 1 x 2 m to the north.
-    constexpr float wall_m = 0.3f;
-    const glm::vec3 low = hut_low - glm::vec3(wall_m, wall_m, 1);
-    const glm::vec3 high = hut_high + wall_m;
-    scene.add_box({low.x, low.y, hut_high.z}, high, white);
-    scene.add_box(low, {high.x, hut_low.y, hut_high.z}, white);
-    scene.add_box({low.x, hut_low.y, low.z}, {hut_low.x, high.y, hut_high.z}, white);
-    scene.add_box({hut_high.x, hut_low.y, low.z}, {high.x, high.y, hut_high.z}, white);
-    scene.add_box({hut_low.x, hut_high.y, low.z}, {46.5f, high.y, hut_high.z}, white);
-    scene.add_box({47.5f, hut_high.y, low.z}, {hut_high.x, high.y, hut_high.z}, white);
-    scene.add_interior(hut_low - glm::vec3(0.5f, 0.5f, 1), hut_high + glm::vec3(0.5f),
-                       (hut_low + hut_high) * 0.5f - glm::vec3(0, 0, 0.5f));
-    // A canopy at 8 m over the sectors from x = 128 on, with a gap of 0.4 m between its leaves of 4 m.
-    for (int y = 0; y < 16; ++y) {
-        for (int x = 0; x < 16; ++x) {
-            const glm::vec3 at(128 + 4 * x, 4 * y, 8);
-            scene.add_box(at + glm::vec3(0.2f, 0.2f, 0), at + glm::vec3(3.8f, 3.8f, 0.1f), green);
-        }
-    }
-    return scene;
-}
-
-const BakedMap& baked_scene() {
-    static const BakedMap map = [] {
-        bake::Settings settings;
-        settings.rays = 512;
-        settings.min_distance_m = 4;
-        settings.local_transfer = true;
-        return BakedMap(talk_scene().b, settings, {{0, 0}, {1, 0}, {2, 0}});
-    }();
-    return map;
-}
 
 Float3 as_float(const glm::vec3& v) {
     return {v.x, v.y, v.z};
@@ -131,7 +29,7 @@ glm::vec3 on_sphere(const glm::vec3& middle, const glm::vec3& normal) {
 
 Ambient ambient_of(const SceneLight& light, const glm::vec3& at, const glm::vec3& normal,
                    std::span<const LightShare> lamps = {}) {
-    return ambient_at(baked_scene().set(), light, lamps,
+    return ambient_at(baked_talk_scene().set(), light, lamps,
                       {.at = as_place(at), .normal = as_float(normal), .offset_m = volume_offset_m});
 }
 
@@ -151,7 +49,7 @@ TestMoment sun_from(const glm::dvec3& to_sun) {
 
 // Slides 7 to 9. How the truth colours each side, the runtime does; it need not be as strong.
 TEST(TalkScene, BouncesTheColoursOfWallsAndGround) {
-    const reference::Scene scene(baked_scene().map());
+    const reference::Scene scene(baked_talk_scene().map());
     const TestMoment morning = sun_from({1, 0, 0.7});
     const TestMoment evening = sun_from({-1, 0, 0.7});
     const auto truth = [&](const TestMoment& moment, const glm::vec3& at, const glm::vec3& normal) {
@@ -188,7 +86,7 @@ TEST(TalkScene, ShowsTheBounceOfALampAtNight) {
     SceneLight night;
     std::array<LightShare, max_shares_per_light> shares;
     const PointLight lamp{{15, 32, 2}, {5, 5, 5}};
-    const std::size_t count = split_light(baked_scene().set(), lamp, shares);
+    const std::size_t count = split_light(baked_talk_scene().set(), lamp, shares);
     const glm::vec3 facing = on_sphere(beside_red, west);
     const glm::vec3 lit = colour_of(ambient_of(night, facing, west, {shares.data(), count}));
     EXPECT_EQ(colour_of(ambient_of(night, facing, west)), glm::vec3(0));
@@ -201,7 +99,7 @@ TEST(TalkScene, ShowsTheBounceOfALampAtNight) {
 
 // Slide 53: the sky is brighter on the side of the sun, which has just set.
 TEST(TalkScene, MakesAWallMoreOrangeTowardsTheSunset) {
-    const reference::Scene scene(baked_scene().map());
+    const reference::Scene scene(baked_talk_scene().map());
     TestMoment sunset =
         moment_of({.zenith = {0.2f, 0.3f, 0.6f}, .horizon = {0.4f, 0.4f, 0.5f}, .sun_side = {1, 0.5f, 0.1f}},
                   glm::dvec3(9), {-1, 0.1, -0.01});
@@ -226,7 +124,7 @@ TEST(TalkScene, ShowsNoBlueInside) {
     sky.sky = constant_sky({0, 0, 1});
     TestMoment same;
     same.truth.sky = [](const glm::dvec3&) { return glm::dvec3(0, 0, 1); };
-    const reference::Scene scene(baked_scene().map());
+    const reference::Scene scene(baked_talk_scene().map());
     double found = 0;
     double truth = 0;
     double as_outside = 0;
@@ -235,7 +133,7 @@ TEST(TalkScene, ShowsNoBlueInside) {
                            hut_low.y + 1 + 2 * static_cast<float>(n / 3), -0.45f);
         found += static_cast<double>(ambient_of(sky, at, up).colour[2]);
         as_outside += static_cast<double>(
-            ambient_at(baked_scene().set(), sky, {},
+            ambient_at(baked_talk_scene().set(), sky, {},
                        {.at = as_place(at), .offset_m = volume_offset_m, .interiors = false})
                 .colour[2]);
         const glm::dvec3 normal = up;
@@ -255,7 +153,7 @@ TEST(TalkScene, KeepsTheJunglesContrastInTheDistance) {
     std::vector<std::byte> memory(SectorSet::memory_bytes(limits));
     SectorSet set(memory, limits);
     std::vector<std::vector<std::uint8_t>> files;
-    for (const Sector& sector : baked_scene().files())
+    for (const Sector& sector : baked_talk_scene().files())
         files.push_back(write_sector(sector));
     for (const auto& file : files)
         ASSERT_EQ(set.load(file), LoadStatus::loaded);
@@ -274,7 +172,7 @@ TEST(TalkScene, KeepsTheJunglesContrastInTheDistance) {
     };
     const float jungle = far(under_leaves);
     const float clearing = far(in_clearing);
-    const reference::Scene scene(baked_scene().map());
+    const reference::Scene scene(baked_talk_scene().map());
     reference::Moment moment;
     moment.sky = [](const glm::dvec3&) { return glm::dvec3(1); };
     const glm::dvec3 normal = up;
