@@ -5,14 +5,12 @@
 // SPDX-License-Identifier: MIT. Copy what you like.
 #include <drtv/ambient.h>
 #include <drtv/day.h>
-#include <drtv/read.h>
 #include <drtv/volume.h>
+
+#include "sector_folder.h"
 
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 int main(int argc, char** argv) {
@@ -20,11 +18,9 @@ int main(int argc, char** argv) {
         return std::fputs("usage: relight_a_folder FOLDER\n", stderr), 1;
 
     // 1. Memory for everything, once: the same limits for all three. The runtime allocates nothing after
-    // this. A game takes the sectors around its camera (64 are many); here all that the folder has.
-    const auto entries = std::filesystem::directory_iterator(argv[1]);
-    const auto count = static_cast<std::uint32_t>(std::distance(begin(entries), end(entries)));
-    const drtv::SectorSetLimits limits{
-        .sectors = count, .probes = count * 255, .interiors = 1024, .tiles = count};
+    // this.
+    SectorFolder folder{argv[1]};
+    const drtv::SectorSetLimits limits = folder.limits();
     const drtv::VolumeSettings settings{.encoding = drtv::TexelEncoding::rgba8_sqrt};
     std::vector<std::byte> set_memory(drtv::SectorSet::memory_bytes(limits));
     std::vector<std::byte> relit_memory(drtv::RelitProbes::memory_bytes(limits, false));
@@ -33,29 +29,9 @@ int main(int argc, char** argv) {
     drtv::RelitProbes relit(relit_memory, limits, false);
     drtv::Volume volume(volume_memory, settings, limits);
 
-    // 2. The files. A game maps raw ones (`drtv strip`) and hands them over as they lie; here they are
-    // unpacked.
-    std::vector<std::vector<std::uint8_t>> files;
-    std::vector<const drtv::LoadedSector*> sectors;
-    for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
-        std::ifstream stream(entry.path(), std::ios::binary);
-        const std::vector<char> read{std::istreambuf_iterator<char>(stream), {}};
-        std::vector<std::uint8_t> raw;
-        const drtv::ReadStatus status =
-            drtv::unpack_sector({reinterpret_cast<const std::uint8_t*>(read.data()), read.size()}, raw);
-        files.push_back(std::move(raw));
-        const drtv::LoadedSector* sector = nullptr;
-        const drtv::LoadStatus loaded =
-            status.ok() ? set.load(files.back(), &sector) : drtv::LoadStatus::unreadable;
-        if (loaded == drtv::LoadStatus::loaded)
-            sectors.push_back(sector);
-        else
-            std::fprintf(stderr,
-                         "%s is left out: %s\n",
-                         entry.path().c_str(),
-                         status.ok() ? drtv::sentence_of(loaded) : status.message.c_str());
-    }
-    std::printf("%zu sectors\n", sectors.size());
+    // 2. The files.
+    folder.load(set);
+    const std::vector<const drtv::LoadedSector*>& sectors = folder.sectors;
 
     // 3. Frames: every two hours of a day, half a sector further east.
     const drtv::Day day = drtv::default_day();

@@ -36,3 +36,11 @@ case $output in "1 sectors"*"22:00 "*"us, "*"a particle gets"*) ;; *) fail "the 
 case $output in *nan* | *inf*) fail "not a number" ;; esac
 output=$("$work/examples/relight_a_folder" "$work/empty")
 case $output in "0 sectors"*"12:00 "*) ;; *) fail "of an empty folder the example says: $output" ;; esac
+# What the GPU's thread sees does not hang on how the two threads run.
+for folder in sectors empty; do
+    first=$("$work/examples/one_set_of_textures" "$work/$folder")
+    second=$("$work/examples/one_set_of_textures" "$work/$folder")
+    echo "$first"
+    [ "${first##*saw}" = "${second##*saw}" ] || fail "one_set_of_textures saw other texels: $second"
+    case $first in *" sectors"*"120 frames until "*" saw "[1-9]*) ;; *) fail "one_set_of_textures says: $first" ;; esac
+done

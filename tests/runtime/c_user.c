@@ -73,6 +73,10 @@ int main(int argc, char** argv) {
     if (drtv_relit_sector(relit, set, DRTV_NOW, golden, &light, shares, share_count) != 1 ||
         drtv_relit_sector(relit, set, DRTV_NOW, missing, &light, NULL, 0) != 0)
         return 6;
+    drtv_light brighter = light;
+    brighter.sun_irradiance[1] += 1;
+    if (drtv_relight_needed(set, golden, &light, &light, 0) != 0 || drtv_relight_needed(set, golden, &light, &brighter, 1e-3f) != 1)
+        return 12;
     drtv_volume_update(volume, set, relit, place.at, 0);
     size_t boxes = 0, texture_bytes = 0;
     const drtv_box* dirty = drtv_volume_dirty(volume, &boxes);

@@ -12,6 +12,14 @@ drtv_relit* drtv_relit_make(void* memory, size_t bytes, const drtv_limits* limit
         memory, bytes, drtv_relit_bytes(limits, with_fade), limits_of(*limits), with_fade != 0);
 }
 
+int drtv_relight_needed(
+    const drtv_set* set, drtv_sector_id sector, const drtv_light* shown, const drtv_light* now, float step) {
+    const LoadedSector* loaded = set->find({sector.i, sector.j});
+    const Light before(*shown);
+    const Light after(*now);
+    return loaded != nullptr && relight_needed(loaded->view, before.light, after.light, step) ? 1 : 0;
+}
+
 void drtv_relit_set_light(drtv_relit* relit, int shown, const drtv_light* light) {
     relit->set_light(shown_of(shown), Light(*light).light);
 }

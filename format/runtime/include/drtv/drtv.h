@@ -131,6 +131,10 @@ typedef struct drtv_relit drtv_relit;
 enum { DRTV_NOW = 0, DRTV_NEXT = 1 };
 DRTV_API size_t drtv_relit_bytes(const drtv_limits* limits, int with_fade);
 DRTV_API drtv_relit* drtv_relit_make(void* memory, size_t bytes, const drtv_limits* limits, int with_fade);
+/* 1 where a colour of the sector or of an open sky would change by more than `step`; 0 where it is not
+ * loaded. */
+DRTV_API int drtv_relight_needed(
+    const drtv_set* set, drtv_sector_id sector, const drtv_light* shown, const drtv_light* now, float step);
 DRTV_API void drtv_relit_set_light(drtv_relit* relit, int shown, const drtv_light* light);
 /* 0 where the sector is not loaded. */
 DRTV_API int drtv_relit_sector(drtv_relit* relit,

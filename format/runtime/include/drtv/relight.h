@@ -67,6 +67,15 @@ class ProbeRelighter {
                                    const VisibilityCodes& sky_visibility,
                                    const SceneLight& light);
 
+// Whether time has gone on far enough (slide 35 of the talk): some colour of the sector's probes, or of an
+// open sky, would change by more than `step` from what is shown. Half a code of an RGBA8 volume is scale /
+// 510, of one by square roots as much at the scale, and less below it. Lamps do not count. Cost: where
+// nothing changes, twice that of relighting; else up to the first probe that does.
+[[nodiscard]] bool relight_needed(const SectorView& sector,
+                                  const SceneLight& shown,
+                                  const SceneLight& now,
+                                  float step);
+
 // Where a colour leaves relighting for shading or a texture, nothing is below 0. What is not a number is 0.
 [[nodiscard]] BasisColours clamped(const BasisColours& colours);
 
