@@ -68,6 +68,7 @@ def shuffled_sector(path, index, rng):
         shuffle_local(data, at[LOCAL], probes, rng)
     if INTERIORS in at:
         shuffle_interiors(data, at[INTERIORS], rng)
+        put_in_interiors(data, at[POSITIONS], index)
     if GROUPS in at:
         groups = data[at[GROUPS]]
         shuffle_irradiance(data, at[GROUPS] + 16 + 64 * groups, probes * groups, rng)
@@ -121,6 +122,17 @@ def shuffle_interiors(data, at, rng):
         low_corner = (corner - rng.uniform(*back) for corner, back in zip(CORNER, ((3, 5), (3, 5), (1, 3))))
         origin = [int(UNITS * metres) for metres in low_corner]
         struct.pack_into("<3i2B", data, at + 16 + 32 * n, *origin, shift, 2)
+
+
+def put_in_interiors(data, at, index):
+    """A probe that no interior names, 0.5 m from the corner that all of them hold."""
+    z_origin, z_shift = struct.unpack_from("<i", data, 24)[0], data[30]
+    xy = [
+        round((corner + (0.5 if 64 * i == corner else -0.5) - 64 * i) * UNITS)
+        for corner, i in zip(CORNER, index)
+    ]
+    z = (round((CORNER[2] + 0.2) * UNITS) - z_origin) >> z_shift
+    struct.pack_into("<3H", data, at, *xy, z)
 
 
 def random_normal(rng):
