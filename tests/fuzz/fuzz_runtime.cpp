@@ -88,12 +88,14 @@ void relight_any(std::span<const std::uint8_t> file, Numbers numbers) {
         relit.relight(shown, *sector, light, lamps);
     }
     relit.set_fade(numbers.next());
+    (void)relight_needed(sector->view, light, any_light(numbers), numbers.next());
     for (std::size_t p = 0; p < sector->view.probe_count; ++p)
         check(relit.colours(*sector, p));
     VolumeSettings settings;
     settings.size = {6, 5, 4};
     settings.encoding = static_cast<TexelEncoding>(static_cast<unsigned>(file.size()) % 3);
     settings.blur = numbers.next() > 0;
+    settings.outdoors = numbers.next() > 0;
     std::vector<std::byte> volume_memory(Volume::memory_bytes(settings, limits));
     Volume volume(volume_memory, settings, limits);
     volume.set_scale(suggest_scale(numbers.next(), numbers.next()));
@@ -104,6 +106,7 @@ void relight_any(std::span<const std::uint8_t> file, Numbers numbers) {
         place.sampling = n == 0 ? Sampling::nearest : Sampling::trilinear;
         place.offset_m = numbers.next();
         place.interior_soft_m = numbers.next();
+        place.interiors = settings.outdoors;
         check(ambient_at(set, light, lamps, place).colours);
         volume.update(set, relit, place.at);
         check(ambient_in(volume, set, light, lamps, place).colours);
