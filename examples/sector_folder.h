@@ -7,6 +7,7 @@
 #include <drtv/read.h>
 #include <drtv/sector_set.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -37,7 +37,7 @@ Float3 position_m(const SectorView& sector, std::size_t p) {
     return metres_of(units_of(sector, sector.positions[p].position));
 }
 
-Double3 place_m(const SectorView& sector, std::size_t p) {
+Double3 exact_position_m(const SectorView& sector, std::size_t p) {
     const Units3 units = units_of(sector, sector.positions[p].position);
     return {units[0] * double{position_unit_m},
             units[1] * double{position_unit_m},

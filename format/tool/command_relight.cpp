@@ -4,6 +4,7 @@
 #include "json_writer.h"
 #include "number_list.h"
 #include "relight_points.h"
+#include "relit_volume.h"
 #include "sector_folder.h"
 
 #include <drtv/ambient.h>
@@ -129,20 +130,29 @@ bool read_camera(const RelightRequest& request, std::optional<Double3>& camera) 
     return true;
 }
 
-// A name that no loaded sector has is hardly meant; it may stand elsewhere, so it is no error.
-void warn_of_unknown_groups(const SectorSet& set, const RequestedLight& requested) {
-    for (const std::string& name : requested.names) {
-        bool known = false;
-        for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
-            const LoadedSector* sector = set.at(slot);
-            known = known || (sector != nullptr && find_light_group(sector->view, name));
-        }
-        if (!known)
-            complain("warning: none of the sectors around the places has a light group \"" + name + "\"");
+template <class Has>
+bool any_sector(const SectorSet& set, const Has& has) {
+    for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
+        if (const LoadedSector* sector = set.at(slot); sector != nullptr && has(sector->view))
+            return true;
     }
+    return false;
 }
 
-VolumeSettings settings_of(const RelightRequest& request) {
+// Light that no loaded sector takes is hardly meant; others may, so it is no error.
+void warn_of_lost_light(const SectorSet& set, const RequestedLight& requested) {
+    const std::string none = "warning: none of the sectors around the places has ";
+    for (const std::string& name : requested.names) {
+        if (!any_sector(set,
+                        [&](const SectorView& view) { return find_light_group(view, name).has_value(); }))
+            complain(none + "a light group \"" + name + "\"");
+    }
+    const auto takes_lamps = [](const SectorView& view) { return !view.local_receivers.empty(); };
+    if (!requested.lamps.empty() && !any_sector(set, takes_lamps))
+        complain(none + "local transfer: lamps bring nothing");
+}
+
+VolumeSettings volume_settings(const RelightRequest& request) {
     VolumeSettings settings;
     const std::string& encoding = request.encoding;
     settings.outdoors = request.interiors;
@@ -151,43 +161,6 @@ VolumeSettings settings_of(const RelightRequest& request) {
                                                    : TexelEncoding::rgba16f;
     return settings;
 }
-
-// A volume over all sectors of a set, relit.
-class RelitVolume {
-  public:
-    RelitVolume(const SectorSet& set,
-                const SceneLight& light,
-                std::span<const LightShare> lamps,
-                const VolumeSettings& settings)
-        : set_(set),
-          relit_memory_(RelitProbes::memory_bytes(set.limits(), false)),
-          relit_(relit_memory_, set.limits(), false),
-          volume_memory_(Volume::memory_bytes(settings, set.limits())),
-          volume_(volume_memory_, settings, set.limits()) {
-        relit_.set_light(Shown::now, light);
-        float largest = relit_.largest_fallback();
-        for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
-            const LoadedSector* sector = set.at(slot);
-            if (sector == nullptr)
-                continue;
-            relit_.relight(Shown::now, *sector, light, lamps);
-            largest = std::max(largest, relit_.largest(*sector));
-        }
-        volume_.set_scale(suggest_scale(largest, 0));
-    }
-
-    const Volume& at(const Double3& camera) {
-        volume_.update(set_, relit_, camera);
-        return volume_;
-    }
-
-  private:
-    const SectorSet& set_;
-    std::vector<std::byte> relit_memory_;
-    RelitProbes relit_;
-    std::vector<std::byte> volume_memory_;
-    Volume volume_;
-};
 
 }  // namespace
 
@@ -213,7 +186,7 @@ int run_relight(const RelightRequest& request) {
         return exit_code;
 
     const SectorSet& set = folder.set();
-    warn_of_unknown_groups(set, requested);
+    warn_of_lost_light(set, requested);
     std::vector<LightShare> lamps;
     for (const PointLight& lamp : requested.lamps) {
         std::array<LightShare, max_shares_per_light> shares;
@@ -222,7 +195,7 @@ int run_relight(const RelightRequest& request) {
     }
     std::optional<RelitVolume> volume;
     if (request.by == "volume")
-        volume.emplace(set, requested.light, lamps, settings_of(request));
+        volume.emplace(set, requested.light, lamps, volume_settings(request));
     if (!request.json)
         print_head();
     for (const RelightPoint& point : points) {
@@ -230,7 +203,7 @@ int run_relight(const RelightRequest& request) {
         place.at = point.at;
         place.normal = point.normal;
         place.sampling = request.by == "nearest" ? Sampling::nearest : Sampling::trilinear;
-        place.offset_m = static_cast<float>(request.offset_m.value_or(volume ? volume_offset_m : 0));
+        place.offset_m = static_cast<float>(request.offset_m.value_or(volume ? surface_offset_m : 0));
         place.interiors = request.interiors;
         const Ambient ambient =
             volume ? ambient_in(volume->at(camera.value_or(point.at)), set, requested.light, lamps, place)

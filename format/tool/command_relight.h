@@ -16,7 +16,7 @@ struct RelightRequest {
     std::string by = "trilinear";       // nearest, trilinear, volume
     std::optional<std::string> camera;  // x,y,z of the volume's window; the place itself without it
     std::string encoding = "rgba16f";   // rgba8, rgba8-sqrt, rgba16f
-    std::optional<double> offset_m;     // 0, by volume volume_offset_m
+    std::optional<double> offset_m;     // else 0, and surface_offset_m by volume
     bool interiors = true;
     bool json = false;
     LightRequest light;

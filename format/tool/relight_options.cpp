@@ -66,9 +66,10 @@ void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& r
             ->check(one_of({"rgba8", "rgba8-sqrt", "rgba16f"}))
             ->capture_default_str();
     relight
-        ->add_option("--offset",
-                     request.offset_m,
-                     "Metres along the normal at which probes and interiors are asked: 0, by volume 1")
+        ->add_option(
+            "--offset",
+            request.offset_m,
+            "Metres along the normal at which probes and interiors are asked (0; with --by volume 1)")
         ->check(finite_number());
     relight->add_flag_callback(
         "--no-interiors",

@@ -80,8 +80,14 @@ void run(Arguments arguments) {
     std::vector<const LoadedSector*> sectors;
     for (const std::filesystem::path& file : files) {
         const Sector sector = reference::read_sector_file(file);
+        const auto reach_m = static_cast<double>(sector.bake.reach_m);
+        const bool same =
+            sector.bake.bounces == arguments.settings.bounces && reach_m == arguments.settings.reach_m;
+        if (!sectors.empty() && !same)
+            throw std::runtime_error(file.string() +
+                                     ": baked with other bounces or reach than the files before it");
         arguments.settings.bounces = sector.bake.bounces;
-        arguments.settings.reach_m = static_cast<double>(sector.bake.reach_m);
+        arguments.settings.reach_m = reach_m;
         sectors.push_back(&set.add(sector));
     }
     const map::Map map = reference::read_map(arguments.map);

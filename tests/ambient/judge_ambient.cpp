@@ -1,5 +1,6 @@
 #include "tests/ambient/judge_ambient.h"
 
+#include "tests/ambient/vectors.h"
 #include "tests/reference/reference_random.h"
 #include "tests/reference/reference_walk.h"
 
@@ -30,7 +31,6 @@ using Truth = std::vector<std::vector<AmbientLight>>;  // [moment][normal]
 constexpr std::size_t normal_count = 64;
 constexpr double farthest_surface_m = 30;
 constexpr double off_surface_m = 0.001;
-constexpr double darkest_mean = 0.001;
 constexpr std::array<float, 4> offsets_m = {0, 0.5f, 1, 2};
 constexpr std::array<RelightMode, 2> modes = {RelightMode::literal, RelightMode::accurate};
 
@@ -38,15 +38,6 @@ std::string name_of(RelightMode mode) {
     return mode == RelightMode::literal ? "literal" : "accurate";
 }
 
-glm::dvec3 as_double(const Float3& v) {
-    return {v[0], v[1], v[2]};
-}
-Float3 as_float(const glm::dvec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-Double3 as_place(const glm::dvec3& v) {
-    return {v.x, v.y, v.z};
-}
 glm::dvec3 place_of(const LoadedSector& sector, std::size_t p) {
     return as_double(position_m(sector.view, p));
 }
@@ -85,44 +76,6 @@ BasisColours true_colours(const std::vector<AmbientLight>& at_basis) {
         colours[b] = as_float(at_basis[b].total());
     return colours;
 }
-
-// Squared differences of one place.
-struct Sum {
-    double squares = 0;
-    double difference = 0;
-    double truth = 0;
-    std::size_t count = 0;
-
-    void add(const glm::dvec3& found, const glm::dvec3& truth_there) {
-        for (glm::length_t c = 0; c < 3; ++c) {
-            squares += std::pow(found[c] - truth_there[c], 2);
-            difference += found[c] - truth_there[c];
-            truth += truth_there[c];
-            ++count;
-        }
-    }
-};
-
-// By name, in the order in which names came first.
-class Sums {
-  public:
-    Sum& operator[](const std::string& name) {
-        for (auto& [known, sum] : sums_) {
-            if (known == name)
-                return sum;
-        }
-        return sums_.emplace_back(name, Sum{}).second;
-    }
-    [[nodiscard]] const std::vector<std::pair<std::string, Sum>>& all() const { return sums_; }
-
-  private:
-    std::vector<std::pair<std::string, Sum>> sums_;
-};
-
-struct Place {
-    Sums sums;
-    double mean = 0;  // of the truth
-};
 
 // A probe's own errors: nothing is interpolated.
 class ProbeJudge {
@@ -309,10 +262,10 @@ class Judge {
         return as_double(ambient.colour);
     }
 
-    // The probes that the runtime blends there, each with what truly comes to it.
+    // The probes that the runtime blends there, outside of interiors, each with what truly comes to it.
     [[nodiscard]] glm::dvec3 with_true_colours(const Surface& surface, std::size_t m, float offset_m) {
         const glm::dvec3 asked = surface.point + static_cast<double>(offset_m) * surface.normal;
-        const ProbeBlend blend = set_.trilinear(as_place(asked));
+        const ProbeBlend blend = set_.outdoors(set_.trilinear(as_place(asked)));
         glm::dvec3 sum(0);
         double shares = 0;
         for (std::size_t n = 0; n < blend.count; ++n) {
@@ -358,27 +311,6 @@ class Judge {
                metres(offset_m);
     }
 
-    static std::vector<Errors> errors_of(const std::vector<Place>& places) {
-        std::vector<Errors> errors;
-        double truth = 0;
-        for (const Place& place : places) {
-            if (place.mean < darkest_mean)
-                continue;
-            truth += place.mean;
-            for (std::size_t n = 0; n < place.sums.all().size(); ++n) {
-                const auto& [name, sum] = place.sums.all()[n];
-                if (n == errors.size())
-                    errors.push_back({name, {}, 0});
-                const auto count = static_cast<double>(sum.count);
-                errors[n].rms.push_back(std::sqrt(sum.squares / count) / place.mean);
-                errors[n].bias += sum.difference / count;
-            }
-        }
-        for (Errors& of : errors)
-            of.bias /= truth;
-        return errors;
-    }
-
     static std::vector<std::pair<std::string, double>> parts_of(const std::vector<Truth>& truths) {
         AmbientLight all;
         for (const Truth& truth : truths) {
@@ -410,28 +342,7 @@ class Judge {
     std::map<std::pair<std::uint32_t, std::uint8_t>, Truth> known_;
 };
 
-void print(const char* title, const std::vector<Errors>& errors) {
-    std::printf("%-54s %8s %8s %8s\n", title, "median", "p90", "bias");
-    for (const Errors& of : errors)
-        std::printf("  %-52s %8.3f %8.3f %+8.3f\n", of.name.c_str(), of.median(), of.quantile(0.9), of.bias);
-}
-
 }  // namespace
-
-double Errors::quantile(double share) const {
-    if (rms.empty())
-        throw std::runtime_error("no place is bright enough for " + name);
-    std::vector<double> sorted = rms;
-    std::ranges::sort(sorted);
-    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
-}
-
-const Errors& Judgement::find(const std::vector<Errors>& of, const std::string& name) {
-    const auto found = std::ranges::find(of, name, &Errors::name);
-    if (found == of.end())
-        throw std::runtime_error("no errors are named " + name);
-    return *found;
-}
 
 Judgement judge_ambient(const reference::Scene& scene, const SectorSet& set,
                         std::span<const LoadedSector* const> sectors, std::span<const TestMoment> moments,

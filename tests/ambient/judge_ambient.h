@@ -2,6 +2,7 @@
 // interpolation told apart.
 #pragma once
 
+#include "tests/ambient/ambient_errors.h"
 #include "tests/ambient/moments.h"
 #include "tests/reference/reference_ambient.h"
 
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace drtv::test {
@@ -28,25 +30,11 @@ struct JudgeSettings {
     unsigned threads = 2;  // they do not change the numbers
 };
 
-// Errors of one way, a number per place: the root mean square over normals, moments and channels, over the
-// mean of the truth there.
-struct Errors {
-    std::string name;
-    std::vector<double> rms;
-    double bias = 0;  // of all places together, over the mean of the truth
-
-    [[nodiscard]] double median() const { return quantile(0.5); }
-    [[nodiscard]] double quantile(double share) const;
-};
-
 struct Judgement {
     std::vector<Errors> at_probes;    // over 64 normals all around
     std::vector<Errors> at_surfaces;  // at the surface's normal
     // Share of each part in the truth, at probes: sky direct, sky bounce, sun bounce, static.
     std::vector<std::pair<std::string, double>> parts;
-
-    // REQUIRES: there is one of that name.
-    [[nodiscard]] static const Errors& find(const std::vector<Errors>& of, const std::string& name);
 };
 
 // Places whose truth is darker than 1/1000 are left out. REQUIRES: the set holds sectors of this scene.

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -16,11 +17,11 @@
 namespace drtv::test {
 namespace {
 
-bake::Settings with_local_transfer(std::uint32_t bounces = 2) {
+bake::Settings with_local_transfer() {
     bake::Settings settings;
     settings.rays = 64;
     settings.local_transfer = true;
-    settings.local_bounces = bounces;
+    settings.local_bounces = 2;
     settings.local_rays = 1024;
     return settings;
 }
@@ -100,11 +101,17 @@ Agreement agreement(const std::vector<double>& found, const std::vector<double>&
     return {std::sqrt(squares / of_truth), sum / true_sum};
 }
 
-// runtime.md's C4: a mean over lamps at each height.
+// A mean over lamps at each height. The bounds are a tenth above what was measured (docs/measurements.md); no
+// worse than 0.65, and a sum between 0.35 and 1.2, were asked for.
 TEST(Lamps, OverAPlaneBounceAsMuchAsTheyShould) {
     const BakedMap map(plane_scene(glm::vec3(0.5f)).b, with_local_transfer(), {{0, 0}, {1, 0}});
     const auto receivers = receivers_of(map);
-    for (const double height_m : {0.5, 1.0, 2.0, 4.0, 8.0}) {
+    struct Bound {
+        double height_m;
+        double error;
+    };
+    for (const auto& [height_m, largest_error] :
+         {Bound{0.5, 0.6}, {1.0, 0.53}, {2.0, 0.45}, {4.0, 0.4}, {8.0, 0.44}}) {
         std::vector<glm::dvec3> lamps;
         reference::Random random(3);
         for (int n = 0; n < 24; ++n) {
@@ -123,14 +130,13 @@ TEST(Lamps, OverAPlaneBounceAsMuchAsTheyShould) {
         std::ranges::sort(sums);
         const double median = sums[sums.size() / 2];
         std::printf("lamps %g m up: error %.2f, sum %.2f of the truth\n", height_m, error, median);
-        EXPECT_LT(error, 0.65) << height_m;
-        EXPECT_GT(median, 0.35) << height_m;
-        EXPECT_LT(median, 1.2) << height_m;
+        EXPECT_LT(error, largest_error) << height_m;
+        EXPECT_GT(median, 0.75) << height_m;
+        EXPECT_LT(median, 1.0) << height_m;
     }
 }
 
-// A room keeps light that ground would let go, so that a lamp away from its source is held to be too dark, or
-// too bright with its largest factor; few probes, of which each gets much of the lamp.
+// A room keeps light that open ground loses, which the factor for a lamp's place does not know.
 TEST(Lamps, InARoomBounceAboutAsMuchAsTheyShould) {
     const TwoRooms rooms = two_rooms({.shift_m = {0.3f, 0.7f, 0}});
     bake::Settings settings = with_local_transfer();

@@ -6,12 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace drtv::test {
 namespace {
 
 double accurate_over_literal(const Judgement& judgement, const std::string& what = "") {
-    return Judgement::find(judgement.at_probes, "accurate" + what).median() /
-           Judgement::find(judgement.at_probes, "literal" + what).median();
+    return find(judgement.at_probes, "accurate" + what).median() /
+           find(judgement.at_probes, "literal" + what).median();
 }
 
 bake::Settings fine() {
@@ -27,7 +29,7 @@ Judgement judged(const BakedMap& map, const JudgeSettings& settings) {
     return judgement;
 }
 
-TEST(Modes, AccurateErsByLessOutdoors) {
+TEST(Modes, AccurateErrsLessOutdoors) {
     const TwoRooms rooms = two_rooms({});
     const BakedMap map(rooms.source.b, fine(), {{0, 0}});
     const Judgement judgement = judged(map, {.probes = 40, .surfaces = 40, .strata = 32});
@@ -35,13 +37,13 @@ TEST(Modes, AccurateErsByLessOutdoors) {
     // What the file says of the four directions, apart from what shading makes of it.
     EXPECT_LT(accurate_over_literal(judgement, ": stored colours at b"), 0.5);
     // Storage and shading add little to what shading alone costs.
-    EXPECT_LT(Judgement::find(judgement.at_probes, "accurate").median(),
-              1.3 * Judgement::find(judgement.at_probes, "accurate: true colours at b").median());
-    EXPECT_LT(std::abs(Judgement::find(judgement.at_probes, "accurate").bias), 0.05);
+    EXPECT_LT(find(judgement.at_probes, "accurate").median(),
+              1.3 * find(judgement.at_probes, "accurate: true colours at b").median());
+    EXPECT_LT(std::abs(find(judgement.at_probes, "accurate").bias), 0.05);
 }
 
 // At places of a lattice, by hand: a bake's own probes would be three.
-TEST(Modes, AccurateErsByLessIndoors) {
+TEST(Modes, AccurateErrsLessIndoors) {
     TwoRooms rooms = two_rooms({});
     for (int n = 0; n < 75; ++n) {
         const glm::vec3 step(n % 5, n / 5 % 5, n / 25);

@@ -1,5 +1,7 @@
 #include "tests/ambient/moments.h"
 
+#include "tests/ambient/vectors.h"
+
 #include <glm/geometric.hpp>
 
 #include <array>
@@ -7,18 +9,6 @@
 #include <numbers>
 
 namespace drtv::test {
-namespace {
-
-glm::dvec3 as_double(const Float3& v) {
-    return {v[0], v[1], v[2]};
-}
-
-Float3 as_float(const glm::dvec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-}  // namespace
-
 TestMoment moment_of(const SkyColours& sky, const glm::dvec3& sun_irradiance, const glm::dvec3& to_sun) {
     const glm::dvec3 unit = glm::normalize(to_sun);
     TestMoment moment;

@@ -1,5 +1,5 @@
 // What passes walls of 0.2 m, in and out of a house of two rooms: one has a window, the other is closed. From
-// it come the offset at which surfaces ask (volume_offset_m) and how far interiors should reach.
+// it come the offset at which surfaces ask (surface_offset_m) and how far interiors should reach.
 #include "tests/ambient/baked_map.h"
 #include "tests/ambient/moments.h"
 #include "tests/ambient/scenes.h"
@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -148,7 +149,9 @@ TEST(Rooms, LeakLessTheFartherOffTheWallSurfacesAsk) {
         EXPECT_LT(found.lamp[s].back(), 0.6 * found.lamp[s].front());
     }
     EXPECT_LT(found.lamp[0][2], 0.1);
-    print("rooms of 2 m, without interiors", leaks({.side_m = 2}));
+    const Leaks of_a_cell = leaks({.side_m = 2});
+    print("rooms of 2 m, without interiors", of_a_cell);
+    EXPECT_GT(of_a_cell.daylight[1][2], 0.8);
 }
 
 TEST(Rooms, WithInteriorsAsLargeAsTheFadeLeakNothing) {
@@ -156,13 +159,16 @@ TEST(Rooms, WithInteriorsAsLargeAsTheFadeLeakNothing) {
         const Leaks found = leaks({.side_m = side_m, .interiors_reach_m = 0.5f});
         print(side_m > 2 ? "rooms of 7 m, with interiors" : "rooms of 2 m, with interiors", found);
         for (std::size_t s = 0; s < 2; ++s) {
-            for (std::size_t o = 0; offsets_m[o] <= volume_offset_m; ++o) {
+            for (std::size_t o = 0; o < offsets_m.size() && offsets_m[o] <= surface_offset_m; ++o) {
                 EXPECT_LT(found.daylight[s][o], 0.001);
                 EXPECT_LT(found.lamp[s][o], 0.001);
             }
         }
     }
-    print("rooms of 7 m, with interiors to the middle of the walls", leaks({.interiors_reach_m = 0.1f}));
+    const Leaks short_of_it = leaks({.interiors_reach_m = 0.1f});
+    print("rooms of 7 m, with interiors to the middle of the walls", short_of_it);
+    EXPECT_LT(short_of_it.daylight[1][2], 0.5);
+    EXPECT_LT(short_of_it.lamp[1][2], 0.001);
 }
 
 // On the outer walls and the roof: `error` is the mean, `darkest` the least of found over true.
@@ -215,7 +221,7 @@ TEST(Rooms, DoNotDarkenTheOuterWalls) {
         const auto& [off, on] = std::tie(found[0][o], found[1][o]);
         std::printf("outer walls, %g m: error %.3f, darkest %.2f; interiors off: error %.3f, darkest %.2f\n",
                     static_cast<double>(offsets_m[o]), on.error, on.darkest, off.error, off.darkest);
-        if (offsets_m[o] == volume_offset_m) {
+        if (offsets_m[o] == surface_offset_m) {
             EXPECT_LT(on.error, 0.15);
             EXPECT_GT(on.darkest, 0.75);
         }

@@ -39,11 +39,6 @@ void SceneSource::add_probe(const glm::vec3& at) {
     b.add_node({.translation = glm::dvec3(gltf_from_world(at)), .role = "probe"});
 }
 
-void SceneSource::add_lamp(const glm::vec3& at, float candela) {
-    b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", candela}}),
-                .translation = glm::dvec3(gltf_from_world(at))});
-}
-
 SceneSource plane_scene(const glm::vec3& albedo) {
     SceneSource scene;
     scene.b.place(ground(400), "", scene.b.add_material({.colour = {albedo, 1}}));

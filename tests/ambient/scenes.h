@@ -20,8 +20,6 @@ struct SceneSource {
     // Inside of it, the probe at `probe` lights alone.
     void add_interior(const glm::vec3& low, const glm::vec3& high, const glm::vec3& probe);
     void add_probe(const glm::vec3& at);
-    // Shines alike to all sides.
-    void add_lamp(const glm::vec3& at, float candela);
 };
 
 // An endless grey plane, but for its end at 400 m.

@@ -1,6 +1,7 @@
 // What the talk shows on its slides (GDC 2012; 7 to 12, 53, 55 and 58), on a map like its test scene.
 #include "tests/ambient/talk_scene.h"
 #include "tests/ambient/moments.h"
+#include "tests/ambient/vectors.h"
 #include "tests/reference/reference_ambient.h"
 
 #include <drtv/ambient.h>
@@ -15,13 +16,6 @@
 namespace drtv::test {
 namespace {
 
-Float3 as_float(const glm::vec3& v) {
-    return {v.x, v.y, v.z};
-}
-Double3 as_place(const glm::vec3& v) {
-    return {v.x, v.y, v.z};
-}
-
 // At a sphere's surface, a hand's breadth off.
 glm::vec3 on_sphere(const glm::vec3& middle, const glm::vec3& normal) {
     return middle + (sphere_radius_m + 0.05f) * normal;
@@ -30,7 +24,7 @@ glm::vec3 on_sphere(const glm::vec3& middle, const glm::vec3& normal) {
 Ambient ambient_of(const SceneLight& light, const glm::vec3& at, const glm::vec3& normal,
                    std::span<const LightShare> lamps = {}) {
     return ambient_at(baked_talk_scene().set(), light, lamps,
-                      {.at = as_place(at), .normal = as_float(normal), .offset_m = volume_offset_m});
+                      {.at = as_place(at), .normal = as_float(normal), .offset_m = surface_offset_m});
 }
 
 glm::vec3 colour_of(const Ambient& ambient) {
@@ -61,19 +55,20 @@ TEST(TalkScene, BouncesTheColoursOfWallsAndGround) {
         glm::vec3 middle;
         glm::vec3 normal;
         glm::length_t strong, weak;  // channels
-        double error;                // the runtime does not know the shadows of the spheres, below them
+        double within;               // a factor; the runtime does not know that a sphere shades its underside
     };
-    const std::array<Case, 4> cases = {{{morning, beside_red, west, 0, 2, 0.4},
-                                        {evening, beside_blue, east, 2, 0, 0.4},
-                                        {morning, beside_blue, down, 1, 0, 2},
-                                        {evening, beside_red, down, 1, 2, 2}}};
+    const std::array<Case, 4> cases = {{{morning, beside_red, west, 0, 2, 1.6},
+                                        {evening, beside_blue, east, 2, 0, 1.6},
+                                        {morning, beside_blue, down, 1, 0, 3},
+                                        {evening, beside_red, down, 1, 2, 3}}};
     for (const Case& c : cases) {
         const glm::vec3 at = on_sphere(c.middle, c.normal);
         const glm::dvec3 right = truth(c.moment, at, c.normal);
         ASSERT_GT(right[c.strong], 1.3 * right[c.weak]) << "the scene itself";
         const glm::vec3 found = colour_of(ambient_of(c.moment.light, at, c.normal));
         EXPECT_GT(found[c.strong], 1.15f * found[c.weak]) << c.strong;
-        EXPECT_NEAR(found[c.strong], right[c.strong], c.error * right[c.strong]);
+        EXPECT_GT(found[c.strong], right[c.strong] / c.within);
+        EXPECT_LT(found[c.strong], right[c.strong] * c.within);
     }
     // From the other side each wall is in its own shade.
     const glm::vec3 at = on_sphere(beside_red, west);
@@ -134,13 +129,14 @@ TEST(TalkScene, ShowsNoBlueInside) {
         found += static_cast<double>(ambient_of(sky, at, up).colour[2]);
         as_outside += static_cast<double>(
             ambient_at(baked_talk_scene().set(), sky, {},
-                       {.at = as_place(at), .offset_m = volume_offset_m, .interiors = false})
+                       {.at = as_place(at), .offset_m = surface_offset_m, .interiors = false})
                 .colour[2]);
         const glm::dvec3 normal = up;
         truth += reference::ambient(scene, at, {&normal, 1}, {&same.truth, 1}, {})[0][0].total().z;
     }
     EXPECT_LT(found, 9 * 0.06);
     EXPECT_LT(found, 2 * truth);
+    EXPECT_GT(found, truth / 4) << "what the door lets in";
     EXPECT_GT(as_outside, 3 * found) << "that interiors do it";
     const glm::vec3 roof(47, 11, hut_high.z + 0.35f);
     EXPECT_GT(ambient_of(sky, roof, up).colour[2], 0.7f);
@@ -159,16 +155,12 @@ TEST(TalkScene, KeepsTheJunglesContrastInTheDistance) {
         ASSERT_EQ(set.load(file), LoadStatus::loaded);
     SceneLight sky;
     sky.sky = constant_sky({1, 1, 1});
-    std::vector<std::byte> relit_memory(RelitProbes::memory_bytes(limits, false));
-    RelitProbes relit(relit_memory, limits, false);
-    relit.set_light(Shown::now, sky);
-    VolumeSettings settings;
-    settings.outdoors = true;
-    std::vector<std::byte> volume_memory(Volume::memory_bytes(settings, limits));
-    Volume volume(volume_memory, settings, limits);
-    volume.update(set, relit, {-1000, 0, 0});
+    OwnedRelit relit(limits);
+    relit->set_light(Shown::now, sky);
+    OwnedVolume volume({.outdoors = true}, limits);
+    volume->update(set, *relit, {-1000, 0, 0});
     const auto far = [&](const glm::vec3& at) {
-        return ambient_in(volume, set, sky, {}, {.at = as_place(at), .offset_m = 0}).colour[1];
+        return ambient_in(*volume, set, sky, {}, {.at = as_place(at), .offset_m = 0}).colour[1];
     };
     const float jungle = far(under_leaves);
     const float clearing = far(in_clearing);
@@ -184,7 +176,7 @@ TEST(TalkScene, KeepsTheJunglesContrastInTheDistance) {
     for (const SectorId id : {SectorId{0, 0}, SectorId{1, 0}, SectorId{2, 0}})
         ASSERT_TRUE(set.drop(id));
     set.retire();
-    volume.update(set, relit, {-1000, 0, 0});
+    volume->update(set, *relit, {-1000, 0, 0});
     EXPECT_EQ(far(under_leaves), jungle);
     EXPECT_EQ(far(in_clearing), clearing);
     SectorSet unknown(memory, limits);

@@ -76,10 +76,9 @@ TEST(Outdoors, AVolumeShowsThemWhereItIsAskedTo) {
     SceneLight light;
     light.sky = constant_sky({1, 1, 1});
     const SectorSetLimits& limits = set->limits();
-    std::vector<std::byte> relit_memory(RelitProbes::memory_bytes(limits, false));
-    RelitProbes relit(relit_memory, limits, false);
-    relit.set_light(Shown::now, light);
-    relit.relight(Shown::now, sector, light, {});
+    test::OwnedRelit relit(limits);
+    relit->set_light(Shown::now, light);
+    relit->relight(Shown::now, sector, light, {});
     for (const bool blur : {false, true}) {
         for (const bool outdoors : {false, true}) {
             VolumeSettings settings;
@@ -87,10 +86,9 @@ TEST(Outdoors, AVolumeShowsThemWhereItIsAskedTo) {
             settings.encoding = TexelEncoding::rgba16f;
             settings.outdoors = outdoors;
             settings.blur = blur;
-            std::vector<std::byte> memory(Volume::memory_bytes(settings, limits));
-            Volume volume(memory, settings, limits);
-            volume.update(*set, relit, {24, 24, 2});
-            const float red = volume.sample({22, 22, 2}).colours[0][0];
+            test::OwnedVolume volume(settings, limits);
+            volume->update(*set, *relit, {24, 24, 2});
+            const float red = volume->sample({22, 22, 2}).colours[0][0];
             EXPECT_EQ(red > 0.7f, outdoors) << blur;
         }
     }

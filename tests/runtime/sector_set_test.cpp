@@ -411,10 +411,15 @@ TEST(WantedSectors, OfNoPlaceOrBeyondTheWorldAreNone) {
 // ---- Threads (for ThreadSanitizer): four readers and a streamer.
 
 TEST(SectorSet, ReadersRunBesideAStreamer) {
-    OwnedSet set({.sectors = 9, .probes = 9 * 64, .interiors = 0, .tiles = 64});
+    OwnedSet set({.sectors = 9, .probes = 9 * 64, .interiors = 9, .tiles = 64});
     std::vector<std::vector<std::uint8_t>> files;
-    for (std::int32_t i = 0; i < 9; ++i)
-        files.push_back(write_sector(lattice_sector({i % 3, i / 3}, 8, 2)));
+    for (std::int32_t n = 0; n < 9; ++n) {
+        Sector sector = lattice_sector({n % 3, n / 3}, 8, 2);
+        const std::array<std::int32_t, 3> corner = {65536 * sector.i + 20480, 65536 * sector.j + 20480, 0};
+        sector.interiors.push_back(test::box_interior(corner, {0, 0, 0}, {16384, 16384, 4096}));
+        sector.interiors.back().probe = 27;
+        files.push_back(write_sector(sector));
+    }
     // Between rounds no reader is at work: there a game retires.
     for (int round = 0; round < 20; ++round) {
         std::atomic<int> working{4};
@@ -425,14 +430,14 @@ TEST(SectorSet, ReadersRunBesideAStreamer) {
                 std::uniform_real_distribution<double> side(-20, 210);
                 for (int n = 0; n < 500; ++n) {
                     const Double3 at = {side(engine), side(engine), 2};
-                    const ProbeBlend blend = set->trilinear(at);
+                    const ProbeBlend blend = set->outdoors(set->trilinear(at));
                     float sum = blend.fallback;
                     for (std::size_t k = 0; k < blend.count; ++k)
                         sum += blend.probes[k].share *
                                (blend.probes[k].sector->view.probe_count == 64 ? 1.0f : 9.0f);
                     EXPECT_NEAR(sum, 1, 1e-5);
                     EXPECT_LE(set->sky_factor(at), 1);
-                    (void)set->interior(at);
+                    EXPECT_GE(set->interior(at).share, 0);
                 }
                 --working;
             });

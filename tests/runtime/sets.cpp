@@ -2,6 +2,7 @@
 
 #include <drtv/write.h>
 
+#include <cstring>
 #include <stdexcept>
 
 namespace drtv::test {
@@ -16,6 +17,19 @@ const LoadedSector& OwnedSet::add(const Sector& sector) {
     if (set_->load(*files_.back(), &loaded, &why) != LoadStatus::loaded)
         throw std::runtime_error("not loaded: " + why.message);
     return *loaded;
+}
+
+OwnedRelit::OwnedRelit(const SectorSetLimits& limits, bool with_fade)
+    : memory_(RelitProbes::memory_bytes(limits, with_fade)),
+      relit_(std::make_unique<RelitProbes>(memory_, limits, with_fade)) {}
+
+OwnedVolume::OwnedVolume(const VolumeSettings& settings, const SectorSetLimits& limits, int poison)
+    : memory_(Volume::memory_bytes(settings, limits), static_cast<std::byte>(poison)),
+      volume_(std::make_unique<Volume>(memory_, settings, limits)) {
+    for (std::size_t k = 0; k < channel_count; ++k) {
+        const auto texels = volume_->texels(k);
+        std::memset(const_cast<std::byte*>(texels.data()), poison, texels.size());
+    }
 }
 
 Sector lattice_sector(SectorId id, std::size_t side, double height_m) {

@@ -3,6 +3,7 @@
 
 #include <drtv/sector.h>
 #include <drtv/sector_set.h>
+#include <drtv/volume.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,31 @@ class OwnedSet {
     std::vector<std::byte> memory_;
     std::unique_ptr<SectorSet> set_;
     std::vector<std::unique_ptr<std::vector<std::uint8_t>>> files_;
+};
+
+class OwnedRelit {
+  public:
+    explicit OwnedRelit(const SectorSetLimits& limits, bool with_fade = false);
+
+    RelitProbes& operator*() { return *relit_; }
+    RelitProbes* operator->() { return relit_.get(); }
+
+  private:
+    std::vector<std::byte> memory_;
+    std::unique_ptr<RelitProbes> relit_;
+};
+
+// A volume whose texels were poisoned before anything was written.
+class OwnedVolume {
+  public:
+    OwnedVolume(const VolumeSettings& settings, const SectorSetLimits& limits, int poison = 0xA5);
+
+    Volume& operator*() { return *volume_; }
+    Volume* operator->() { return volume_.get(); }
+
+  private:
+    std::vector<std::byte> memory_;
+    std::unique_ptr<Volume> volume_;
 };
 
 // A sector with one probe in the middle of each of `side` x `side` squares, `height` metres above 0, whose

@@ -1,5 +1,5 @@
-// Ten thousand steps of a game that does everything in any order: nothing that was never written is read,
-// nothing is black, no number is none.
+// Ten thousand steps of games that load, drop, relight, fade, move and place lamps in any order: nothing that
+// was never written is read, nothing is black, no number is none.
 #include "tests/format/sectors.h"
 #include "tests/runtime/sets.h"
 
@@ -9,11 +9,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <map>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace drtv {
@@ -26,23 +28,43 @@ std::vector<std::byte> poisoned(std::size_t bytes, int poison) {
     return std::vector<std::byte>(bytes, static_cast<std::byte>(poison));
 }
 
-// Random probes with a little sky each, so that no place is black.
+// Sixteen probes with some sky, transfer and local transfer each, a room that names one and holds others, and
+// holes in the grid: over the heights at which the game moves.
 std::vector<std::uint8_t> random_file(SectorId id) {
-    Sector sector = test::random_sector_1_2(static_cast<std::uint32_t>(id.i * 131 + id.j * 17 + 900), 20);
-    sector.i = id.i;
-    sector.j = id.j;
-    // Local transfer of neighbours that are other than these would name probes that are not there.
-    sector.local_transfer.reset();
-    sector.convergence.reset();
-    sector.static_irradiance.clear();  // of any brightness
-    for (Probe& probe : sector.probes) {
-        probe.sky_visibility = {20000, 20000, 20000, 0};
-        for (auto& channel : probe.transfer)
-            for (auto& direction : channel)
-                direction = {900, 0, 0, 0};
+    std::mt19937 random(static_cast<std::uint32_t>(id.i * 131 + id.j * 17 + 900));
+    const auto code = [&](int least, int most) {
+        return static_cast<std::int16_t>(least +
+                                         static_cast<int>(random() % static_cast<unsigned>(most - least)));
+    };
+    Sector sector = test::lattice_sector(id, 4, 2);
+    sector.grid.z_origin_units = -20 * position_units_per_m;
+    sector.grid.cell_height_units = 2560;
+    for (std::size_t n = 0; n < grid_cell_count; ++n) {
+        const bool in_hole = n % grid_size < 5 && n / grid_size % grid_size < 5;
+        const bool named = !in_hole && random() % 7 != 0;
+        sector.grid.cells[n] = named ? static_cast<std::uint8_t>(random() % 16) : no_probe;
     }
-    for (std::size_t n = 0; n < grid_cell_count; n += 7)
-        sector.grid.cells[n] = no_probe;
+    for (Probe& probe : sector.probes) {
+        const std::int16_t seen = code(4000, 32767);
+        probe.sky_visibility = {seen, seen, seen, 0};
+        for (auto& channel : probe.transfer) {
+            for (auto& direction : channel)
+                direction = {code(300, 3000), 0, code(-100, 100), code(-100, 100)};
+        }
+    }
+    const auto corner = static_cast<std::int32_t>(random() % 30) * position_units_per_m;
+    sector.interiors.push_back(test::box_interior({65536 * id.i + corner, 65536 * id.j + corner, -4096},
+                                                  {0, 0, 0}, {20480, 20480, 12288}));
+    sector.interiors.back().probe = static_cast<std::uint8_t>(random() % 16);
+    LocalTransfer& local = sector.local_transfer.emplace();
+    std::vector<std::size_t> all;
+    for (std::uint8_t p = 0; p < 16; ++p) {
+        local.sources.push_back({0, 0, p, 0});
+        all.push_back(p);
+    }
+    local.receivers.resize(16);
+    for (std::size_t p = 0; p < 16; ++p)
+        test::add_pairs(local, p, all, {{{2000, 0, 0, 0}, {2000, 0, 0, 0}, {2000, 0, 0, 0}}});
     return write_sector(sector);
 }
 
@@ -63,21 +85,22 @@ class Game {
             for (int i = -3; i < 3; ++i)
                 files_[{i, j}] = random_file({i, j});
         }
-        light_.sky = constant_sky({1, 1, 1});
-        light_.sun = {{1, 1, 1}, {0.3f, 0.2f, 1}};
-        relit_.set_light(Shown::now, light_);
-        relit_.set_light(Shown::next, light_);
+        lights_[0].sky = constant_sky({1, 1, 1});
+        lights_[1].sky = constant_sky({2, 1, 0.5f});
+        for (SceneLight& light : lights_)
+            light.sun = {{1, 1, 1}, {0.3f, 0.2f, 1}};
+        relit_.set_light(Shown::now, lights_[0]);
+        relit_.set_light(Shown::next, lights_[1]);
+        volume_.set_scale(16);
     }
 
     void step() {
-        switch (one_of(10)) {
+        switch (one_of(14)) {
             case 0: {
                 const LoadedSector* loaded = nullptr;
                 const auto status = set_.load(files_[{one_of(6) - 3, one_of(6) - 3}], &loaded);
-                if (status == LoadStatus::loaded && one_of(4) != 0) {
-                    relit_.relight(Shown::now, *loaded, light_, lamps_);
-                    relit_.relight(Shown::next, *loaded, light_, lamps_);
-                }
+                if (status == LoadStatus::loaded && one_of(4) != 0)
+                    relight(*loaded);
                 break;
             }
             case 1:
@@ -105,6 +128,17 @@ class Game {
             case 6:
                 relit_.set_fade(static_cast<float>(one_of(5)) / 4);
                 break;
+            case 7:
+                if (const LoadedSector* sector = set_.find({one_of(6) - 3, one_of(6) - 3}))
+                    relight(*sector);
+                break;
+            case 8:
+                relit_.finish_fade();
+                std::swap(lights_[0], lights_[1]);
+                break;
+            case 9:
+                volume_.set_scale(one_of(2) == 0 ? 16.0f : 32.0f);
+                break;
             default:
                 for (double& axis : camera_)
                     axis += one_of(9) - 4;
@@ -119,12 +153,12 @@ class Game {
             asked.normal = {0.6f, 0, one_of(2) == 0 ? 0.8f : -0.8f};
             asked.offset_m = one_of(2) == 0 ? 0.0f : 1.0f;
             asked.interiors = volume_.settings().outdoors;
-            expect_light(ambient_at(set_, light_, lamps_, asked), asked.at);
-            expect_light(ambient_in(volume_, set_, light_, lamps_, asked), asked.at);
+            expect_light(ambient_at(set_, lights_[0], lamps_, asked), asked.at);
+            expect_light(ambient_in(volume_, set_, lights_[0], lamps_, asked), asked.at);
             const Volume::Sample sample = volume_.sample(asked.at);
             for (const Float3& colour : sample.colours) {
                 for (const float channel : colour)
-                    ASSERT_TRUE(channel >= 0 && channel < 20) << channel;
+                    ASSERT_TRUE(channel >= 0 && channel < 33) << channel;
             }
         }
     }
@@ -139,6 +173,14 @@ class Game {
             ASSERT_TRUE(std::ranges::equal(before[k], volume_.texels(k)));
     }
 
+    // That the game came everywhere.
+    void expect_all_seen() const {
+        for (const int count : statuses_)
+            EXPECT_GT(count, 20);
+        EXPECT_GT(interiors_, 20);
+        EXPECT_GT(lit_by_lamps_, 10);
+    }
+
   private:
     int one_of(int n) { return static_cast<int>(engine_() % static_cast<unsigned>(n)); }
     // In the window or anywhere.
@@ -151,9 +193,17 @@ class Game {
         return {from(camera_[0]), from(camera_[1]), one_of(400) / 10.0 - 20};
     }
 
-    static void expect_light(const Ambient& ambient, const Double3& at) {
+    void relight(const LoadedSector& sector) {
+        relit_.relight(Shown::now, sector, lights_[0], lamps_);
+        relit_.relight(Shown::next, sector, lights_[1], lamps_);
+    }
+
+    void expect_light(const Ambient& ambient, const Double3& at) {
+        ++statuses_[static_cast<std::size_t>(ambient.status)];
+        interiors_ += ambient.interior.share > 0 ? 1 : 0;
+        lit_by_lamps_ += ambient.parts.local[0] > 0 ? 1 : 0;
         for (const float channel : ambient.colour)
-            ASSERT_TRUE(channel > 0 && channel < 20)
+            ASSERT_TRUE(channel > 0 && channel < 33)
                 << channel << " at " << at[0] << ", " << at[1] << ", " << at[2];
     }
 
@@ -164,23 +214,28 @@ class Game {
     SectorSet set_;
     RelitProbes relit_;
     Volume volume_;
-    SceneLight light_;
+    std::array<SceneLight, 2> lights_;  // now and next
     std::vector<LightShare> lamps_;
     Double3 camera_{};
     std::mt19937 engine_{11};
+    std::array<int, 4> statuses_{};
+    int interiors_ = 0;
+    int lit_by_lamps_ = 0;
 };
 
 TEST(Soak, NothingUnwrittenIsReadAndNothingIsBlack) {
     constexpr int steps = 10000;
-    const VolumeSettings small{.size = {20, 24, 8}, .encoding = TexelEncoding::rgba16f};
-    VolumeSettings outdoors = small;
-    outdoors.outdoors = true;
-    VolumeSettings blurred = small;
-    blurred.blur = true;
-    for (const VolumeSettings& settings : {small, outdoors, blurred}) {
+    constexpr std::array<std::int32_t, 3> small = {20, 24, 8};
+    const std::vector<VolumeSettings> volumes = {
+        {.size = small, .encoding = TexelEncoding::rgba16f},
+        {.size = small, .encoding = TexelEncoding::rgba16f, .outdoors = true},
+        {.size = small, .encoding = TexelEncoding::rgba16f, .blur = true},
+        {.size = small, .encoding = TexelEncoding::rgba8_sqrt, .atlas = true, .outdoors = true},
+        {.size = small, .encoding = TexelEncoding::rgba8, .borders = false}};
+    for (const VolumeSettings& settings : volumes) {
         for (const int poison : poisons) {
             Game game(settings, poison);
-            for (int step = 0; step < steps / 6; ++step) {
+            for (int step = 0; step < steps / 10; ++step) {
                 game.step();
                 game.look();
                 if (step % 20 == 0)
@@ -188,6 +243,8 @@ TEST(Soak, NothingUnwrittenIsReadAndNothingIsBlack) {
                 if (HasFatalFailure())
                     FAIL() << "step " << step << ", poison " << poison;
             }
+            if (settings.outdoors)
+                game.expect_all_seen();
         }
     }
 }

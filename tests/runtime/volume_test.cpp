@@ -24,36 +24,15 @@ using test::OwnedSet;
 
 constexpr SectorSetLimits limits{.sectors = 64, .probes = 64 * 64, .interiors = 0, .tiles = 256};
 
-// A volume whose texels were poisoned before anything was written.
-class OwnedVolume {
+class OwnedVolume : public test::OwnedVolume {
   public:
     explicit OwnedVolume(const VolumeSettings& settings, int poison = 0xA5)
-        : memory_(Volume::memory_bytes(settings, limits)) {
-        volume_ = std::make_unique<Volume>(memory_, settings, limits);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto texels = volume_->texels(k);
-            std::memset(const_cast<std::byte*>(texels.data()), poison, texels.size());
-        }
-    }
-
-    Volume* operator->() { return volume_.get(); }
-
-  private:
-    std::vector<std::byte> memory_;
-    std::unique_ptr<Volume> volume_;
+        : test::OwnedVolume(settings, limits, poison) {}
 };
 
-class OwnedRelit {
+class OwnedRelit : public test::OwnedRelit {
   public:
-    explicit OwnedRelit(bool with_fade = false)
-        : memory_(RelitProbes::memory_bytes(limits, with_fade)), relit_(memory_, limits, with_fade) {}
-
-    RelitProbes& operator*() { return relit_; }
-    RelitProbes* operator->() { return &relit_; }
-
-  private:
-    std::vector<std::byte> memory_;
-    RelitProbes relit_;
+    explicit OwnedRelit(bool with_fade = false) : test::OwnedRelit(limits, with_fade) {}
 };
 
 SceneLight daylight(float strength = 1) {

@@ -98,12 +98,13 @@ ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::u
 // World position of a probe in metres; exact in float within 16 km of the origin. REQUIRES: p <
 // sector.probe_count.
 [[nodiscard]] Float3 position_m(const SectorView& sector, std::size_t p);
-// The same, exact everywhere.
-[[nodiscard]] Double3 place_m(const SectorView& sector, std::size_t p);
+// The same in double: exact everywhere.
+[[nodiscard]] Double3 exact_position_m(const SectorView& sector, std::size_t p);
 
-// The probe that lights a world position outside of all interiors (find_interior is asked first), by the grid
-// (SPEC.md, section 5.5); `no_probe` where the cell has none: then nothing is added. What is beside, above or
-// below the grid takes the nearest cell.
+// The probe that the grid names for a world position (SPEC.md, section 5.5), which lights what is outside of
+// all interiors (find_interior is asked first), unless it is an interior's own (section 5.11); `no_probe`
+// where the cell has none: then nothing is added. What is beside, above or below the grid takes the nearest
+// cell.
 [[nodiscard]] std::uint8_t find_probe(const SectorView& sector, const Double3& world_m);
 
 // REQUIRES: the sector has static irradiance, p < sector.probe_count.

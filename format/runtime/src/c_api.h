@@ -3,7 +3,6 @@
 #pragma once
 
 #include <drtv/ambient.h>
-#include <drtv/day.h>
 #include <drtv/drtv.h>
 
 #include "arena.h"

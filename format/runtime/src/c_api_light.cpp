@@ -1,6 +1,7 @@
 // The C face: sectors, light, places.
 #include "c_api.h"
 
+#include <drtv/day.h>
 #include <drtv/version.h>
 
 using namespace drtv;

@@ -19,9 +19,10 @@ constexpr double lowest_lamp_m = 0.25;
 // Rooms keep light that flat ground does not: by what a lamp may be brighter than its source.
 constexpr double largest_factor = 3;
 
-// What a lamp at a height over flat ground brings by bounce to a probe at probe_height_m over it, up to a
-// constant. Both kernels are Poisson's, and convolve to that of both heights' sum; the distance between the
-// two holds the heights' difference.
+// What a lamp at a height over flat ground brings by one bounce, in band 0, to a probe at probe_height_m over
+// it, up to a constant. What the lamp sends to the ground and what the probe gets from there both are Poisson
+// kernels, which convolve to the one of both heights' sum; the distance between the two holds the heights'
+// difference.
 double ground_bounce(double squared_distance_m2, double lamp_m) {
     const double squared = squared_distance_m2 + 4 * lamp_m * probe_height_m;
     return (lamp_m + probe_height_m) / (squared * std::sqrt(squared));
@@ -31,7 +32,7 @@ LightShare share_of(const PointLight& light, const SectorView& sector, std::uint
     LightShare part;
     part.sector = {sector.i, sector.j};
     part.probe = probe;
-    part.source = place_m(sector, probe);
+    part.source = exact_position_m(sector, probe);
     part.light = light.position;
     for (std::size_t c = 0; c < channel_count; ++c)
         part.intensity[c] = light.intensity[c] * share;
@@ -76,8 +77,8 @@ float sees(const ProbeShare& a, const ProbeShare& b, float own) {
     const float back = bounce_between(b, a);
     if (!(own > 0) || there < 0 || back < 0)
         return 1;
-    const Double3 place_a = place_m(a.sector->view, a.probe);
-    const Double3 place_b = place_m(b.sector->view, b.probe);
+    const Double3 place_a = exact_position_m(a.sector->view, a.probe);
+    const Double3 place_b = exact_position_m(b.sector->view, b.probe);
     const double apart = ground_bounce(squared_distance(place_a, place_b), probe_height_m);
     const auto flat = static_cast<float>(apart / ground_bounce(0, probe_height_m));
     return std::min(1.0f, std::max(there, back) / (std::sqrt(own) * flat * enough));
@@ -110,7 +111,7 @@ void keep_to_one_side(std::span<ProbeShare> probes) {
 }
 
 // How much more a lamp itself brings than its share at the source, if all stood over flat ground.
-float as_seen_from(const Double3& receiver, const LightShare& share) {
+float ground_bounce_ratio(const Double3& receiver, const LightShare& share) {
     const double lamp_m = std::max(lowest_lamp_m, probe_height_m + share.light[2] - share.source[2]);
     const double from_lamp = ground_bounce(squared_distance(share.light, receiver), lamp_m);
     const double from_source = ground_bounce(squared_distance(share.source, receiver), probe_height_m);
@@ -158,7 +159,7 @@ LocalRelighter::LocalRelighter(const LoadedSector& sector, std::span<const Light
 }
 
 void LocalRelighter::add_to(BasisColours& colours, std::size_t p) const {
-    const Double3 receiver = place_m(*sector_, p);
+    const Double3 receiver = exact_position_m(*sector_, p);
     std::array<Lanes, channel_count> sums = {splat(0), splat(0), splat(0)};
     bool any = false;
     for (std::size_t n = 0; n < count_; ++n) {
@@ -167,7 +168,7 @@ void LocalRelighter::add_to(BasisColours& colours, std::size_t p) const {
             continue;
         any = true;
         const LightShare& share = *sources_[n].share;
-        const float factor = as_seen_from(receiver, share);
+        const float factor = ground_bounce_ratio(receiver, share);
         const float per_code = scale / fixed_point_max * factor;
         for (std::size_t c = 0; c < channel_count; ++c)
             sums[c] = sums[c] + load_codes((*codes)[c].data()) * splat(per_code * share.intensity[c]);

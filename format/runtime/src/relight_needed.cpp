@@ -1,25 +1,27 @@
 #include <drtv/relight.h>
 
+#include "half.h"
+
 #include <cmath>
 
 namespace drtv {
 
 bool relight_needed(const SectorView& sector, const SceneLight& shown, const SceneLight& now, float step) {
-    const auto differ = [step](const BasisColours& unclamped, const BasisColours& others) {
-        const BasisColours a = clamped(unclamped);
-        const BasisColours b = clamped(others);
-        bool any = false;
-        for (std::size_t n = 0; n < basis_count; ++n) {
-            for (std::size_t c = 0; c < channel_count; ++c)
-                any = any || !(std::abs(a[n][c] - b[n][c]) <= step);
+    std::array<PackedColours, max_probes + 1> before;
+    std::array<PackedColours, max_probes + 1> after;
+    ProbeRelighter(sector, shown).pack_all(before);
+    ProbeRelighter(sector, now).pack_all(after);
+    before[sector.probe_count] = packed(open_sky(shown));
+    after[sector.probe_count] = packed(open_sky(now));
+    bool needed = shown.mode != now.mode;
+    for (std::size_t p = 0; p <= sector.probe_count; ++p) {
+        for (std::size_t k = 0; k < channel_count; ++k) {
+            for (std::size_t c = 0; c < before[p][k].size(); ++c) {
+                const float change = float_of_half(after[p][k][c]) - float_of_half(before[p][k][c]);
+                needed = needed || !(std::abs(change) <= step);
+            }
         }
-        return any;
-    };
-    const ProbeRelighter before(sector, shown);
-    const ProbeRelighter after(sector, now);
-    bool needed = shown.mode != now.mode || differ(open_sky(shown), open_sky(now));
-    for (std::size_t p = 0; p < sector.probe_count && !needed; ++p)
-        needed = differ(before(p), after(p));
+    }
     return needed;
 }
 

@@ -182,9 +182,9 @@ void SectorSet::find_outdoor_probes(const LoadedSector& sector) {
     const SectorView& view = sector.view;
     const auto outdoor = outdoor_probes_.subspan(sector.first_probe, view.probe_count);
     const auto is_indoors = [&](std::size_t p) {
+        const Double3 place = exact_position_m(view, p);
         for (std::uint32_t n = 0; n < view.interiors.size(); ++n) {
             const StoredInterior& interior = view.interiors[n];
-            const Double3 place = place_m(view, p);
             if (interior.probe == p || (is_near(interior_bounds_[sector.first_interior + n], place, 0) &&
                                         is_inside(view, interior, place)))
                 return true;
@@ -198,7 +198,7 @@ void SectorSet::find_outdoor_probes(const LoadedSector& sector) {
         std::size_t nearest = p;
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t q = 0; indoors[p] && q < view.probe_count; ++q) {
-            const double distance = squared_distance(place_m(view, p), place_m(view, q));
+            const double distance = squared_distance(exact_position_m(view, p), exact_position_m(view, q));
             if (indoors[q] || distance >= least)
                 continue;
             least = distance;

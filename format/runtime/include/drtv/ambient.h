@@ -1,8 +1,8 @@
 // The ambient light at a place and a normal, worked out on the CPU from the files themselves: for what a game
 // lights there (particles, characters), and what every shader is checked against.
 //
-// Pure, thread-safe, no allocation. Cost: 0.1 us by the nearest probe to 1 us between eight, more in
-// interiors.
+// Pure, thread-safe, no allocation. Cost: 2 to 6 us between eight probes, less by the nearest, more
+// in interiors.
 //
 //     const drtv::Ambient ambient = drtv::ambient_at(set, light, {}, {.at = {x, y, z}, .normal = n});
 //     use(ambient.colour);
@@ -18,9 +18,9 @@
 
 namespace drtv {
 
-// What a shader should take: less finds probes behind thin walls, more passes the far side of an alley
-// (docs/measurements.md).
-inline constexpr float volume_offset_m = 1;
+// How far off themselves surfaces should ask: less finds what is behind thin walls, more passes the far side
+// of an alley.
+inline constexpr float surface_offset_m = 1;
 
 enum class Sampling : std::uint8_t { nearest, trilinear };
 
@@ -28,8 +28,8 @@ struct AmbientPlace {
     Double3 at{};            // metres
     Float3 normal{0, 0, 1};  // unit
     Sampling sampling = Sampling::trilinear;
-    // Probes and interiors are asked so far along the normal: by volume_offset_m, or a surface finds what is
-    // behind it.
+    // Probes and interiors are asked so far along the normal. 0 is for what floats freely, a particle or a
+    // character; a surface takes surface_offset_m, or it finds what is behind it.
     float offset_m = 0;
     bool interiors = true;  // and what is in none is lit by outdoors' probes (SectorSet::outdoors)
     float interior_soft_m = 1;
@@ -62,7 +62,7 @@ struct Ambient {
                                  const AmbientPlace& place);
 
 // The same as a shader finds it in a volume that was filled with this light: `place.sampling` does not count.
-// REQUIRES: the volume's `outdoors` is place.interiors.
+// With interiors the volume's `outdoors` should be set, as a shader's that blends them.
 // Outside the window, and fading over its last texel, there is an open sky times sky_factor (slide 57);
 // status and parts say so. Parts are not encoded, so that they add up to the colour but for what the texels
 // round.

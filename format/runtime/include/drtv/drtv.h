@@ -1,7 +1,7 @@
 /* The runtime for C11 and for whatever calls C: Unity (P/Invoke), Rust, Python, Lua. It is libdrtv, a shared
  * library that shows these names alone, over the C++ of drtv/sector_set.h, relit_probes.h, volume.h,
  * ambient.h and light.h; what a call does, which units it takes and which calls may run at once stands there,
- * under the same names. Long because C callers include one header.
+ * under the same names. In CMake it is drtv::c. Long because C callers include one header.
  *
  * Memory is the caller's: ask for the size, hand in a piece that starts at a multiple of 16, free it when the
  * handle is no longer used. There is nothing else to free. Nothing is allocated after that, but for the text
@@ -32,7 +32,7 @@
 extern "C" {
 #endif
 
-/* Rises when anything below changes so that compiled callers no longer fit. Compare it with drtv_abi(). */
+/* Rises from one release to the next when compiled callers no longer fit. Compare it with drtv_abi(). */
 #define DRTV_ABI 1
 DRTV_API uint32_t drtv_abi(void);
 /* "0.1.0" */
@@ -55,7 +55,9 @@ DRTV_API size_t drtv_set_bytes(const drtv_limits* limits);
 DRTV_API drtv_set* drtv_set_make(void* memory, size_t bytes, const drtv_limits* limits);
 
 enum { DRTV_LOADED = 0, DRTV_UNREADABLE = 1, DRTV_ALREADY_THERE = 2, DRTV_NO_ROOM = 3 };
-/* `why`, where it is not NULL, gets what is wrong, cut to `why_bytes` with a 0 at its end. */
+/* The file's bytes start at a multiple of 16 and stay until `retire` after `drop`; until then the sector
+ * counts as already there. `why`, where it is not NULL, gets what is wrong, cut to `why_bytes` with a 0 at
+ * its end. */
 DRTV_API int drtv_set_load(drtv_set* set, const void* file, size_t file_bytes, char* why, size_t why_bytes);
 /* 1 where it was there, else 0. */
 DRTV_API int drtv_set_drop(drtv_set* set, int32_t i, int32_t j);
@@ -219,6 +221,8 @@ typedef struct drtv_ambient_place {
     float interior_soft_m;
     float reserved;
 } drtv_ambient_place;
+/* The offset for surfaces; 0 is for what floats freely. */
+#define DRTV_SURFACE_OFFSET_M 1.0f
 /* Trilinear, no offset, interiors with a softness of 1 m, the normal up. */
 DRTV_API drtv_ambient_place drtv_default_place(void);
 

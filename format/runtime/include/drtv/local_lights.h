@@ -37,19 +37,19 @@ struct LightShare {
 
 inline constexpr std::size_t max_shares_per_light = 8;
 
-// Splits by the eight cells of the grid around the lamp, each to the probe that it names, with the shares w
-// of SectorSet::trilinear; so they change continuously while the lamp moves. A cell does not know walls: each
-// share is then multiplied by (sum over j of w_j sees_kj)^8, over all probes j of the eight, itself too (1).
-// With R what the files' local transfer brings from one to the other (band 0, all channels added) and d their
-// distance,
+// Splits by the eight cells of the grid around the lamp, each to the probe that lights it outdoors, with the
+// shares w of SectorSet::outdoors(trilinear(...)); so they change continuously while the lamp moves. A cell
+// does not know walls: each share is then multiplied by (sum over j of w_j sees_kj)^8, over all probes j of
+// the eight, itself too (1). With R what the files' local transfer brings from one to the other (band 0, all
+// channels added) and d their distance,
 //
 //     sees_kj = min(1, max(R_kj, R_jk) / (sqrt(R_kk R_jj) (1 + d^2 / 4 m^2)^(-3/2) / 4))
 //
 // where (...)^(-3/2) is what flat ground leaves of it; 1 where the files do not say: no local transfer, or
-// nothing brought to themselves. A lamp inside an
-// interior (with a softness of 0) goes to the interior's probe alone; none outside goes to a probe that an
-// interior names. Shares add up to 1 over the probes there are; nothing where there is none, or where the
-// lamp is not finite or dark. Gives how many it wrote. REQUIRES: room for max_shares_per_light.
+// nothing brought to themselves. A lamp inside an interior (with a softness of 0) goes to the interior's
+// probe alone, and so do none outside, unless a sector has no other probes. Shares add up to 1 over the
+// probes there are; nothing where there is none, or where the lamp is not finite or dark. Gives how many it
+// wrote. REQUIRES: room for max_shares_per_light.
 [[nodiscard]] std::size_t split_light(const SectorSet& set,
                                       const PointLight& light,
                                       std::span<LightShare> shares);
@@ -65,8 +65,8 @@ class LocalRelighter {
 
     // Adds what probe p gets. The lamp does not stand where its source does: each pair takes the factor
     // min(3, B(|lamp - p|, h) / B(|source - p|, 1 m)), where B(d, h) = (h + 1 m) (d^2 + 4 h 1 m)^(-3/2) is
-    // what flat ground sends back of a lamp h above it to a probe 1 m above it, and h = max(1/4 m, 1 m +
-    // lamp.z - source.z). REQUIRES: p < view.probe_count.
+    // what flat ground sends back (band 0, one bounce) of a lamp h above it to a probe 1 m above it, and h =
+    // max(1/4 m, 1 m + lamp.z - source.z). REQUIRES: p < view.probe_count.
     void add_to(BasisColours& colours, std::size_t p) const;
     // True where nothing is added to any probe.
     [[nodiscard]] bool empty() const { return count_ == 0; }

@@ -68,9 +68,9 @@ class ProbeRelighter {
                                    const SceneLight& light);
 
 // Whether time has gone on far enough (slide 35 of the talk): some colour of the sector's probes, or of an
-// open sky, would change by more than `step` from what is shown. Half a code of an RGBA8 volume is scale /
-// 510, of one by square roots as much at the scale, and less below it. Lamps do not count. Cost: where
-// nothing changes, twice that of relighting; else up to the first probe that does.
+// open sky, would change by more than `step` from what is shown, as packed. Half a code of an RGBA8 volume is
+// scale / 510; of one by square roots it is scale / 255 at the scale, and less the darker a colour is. Lamps
+// do not count. The two lights need lists of groups of their own. Cost: as relighting the sector twice.
 [[nodiscard]] bool relight_needed(const SectorView& sector,
                                   const SceneLight& shown,
                                   const SceneLight& now,

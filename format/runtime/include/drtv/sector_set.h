@@ -26,7 +26,7 @@
 
 namespace drtv {
 
-// Memory grows with each: some 600 bytes per sector, 800 per tile, 48 per interior.
+// Memory grows with each: some 600 bytes per sector, 800 per tile, 48 per interior, 1 per probe.
 struct SectorSetLimits {
     std::uint32_t sectors = 64;
     std::uint32_t probes = 64 * max_probes;  // of all sectors together; each takes a run without gaps
@@ -102,7 +102,8 @@ class SectorSet {
     SectorSet& operator=(const SectorSet&) = delete;
 
     // Opens a raw sector file and makes its tile. `why`, where given, gets what open_sector says, `loaded`
-    // the sector. Cost: the checksum of the file's bytes, some 20 us for 15 KB.
+    // the sector. Cost: the checksum of the file's bytes, some 20 us for 15 KB; and
+    // for each probe within the bounds of an interior as much as one is_inside.
     LoadStatus load(std::span<const std::uint8_t> file,
                     const LoadedSector** loaded = nullptr,
                     ReadStatus* why = nullptr);
@@ -128,10 +129,10 @@ class SectorSet {
     // (by its centre, j, i), then to the first in the file. With a softness of 0, inside is 1 and outside 0.
     [[nodiscard]] InteriorShare interior(const Double3& world_m, float soft_m = 1) const;
 
-    // Probes that stand inside an interior, or that one names, do not light what is outside. Where a cell
-    // names one, the probe of its sector that stands nearest to it and is none of them does (ties go to the
-    // first); all others, and all where each is one, stand for themselves. Probe by probe; interiors of other
-    // sectors do not count.
+    // What each probe of a sector is outdoors. One that stands inside an interior of its sector, or that such
+    // a one names, does not light what is outside: the probe that stands nearest to it and is none of them
+    // does (ties go to the first). All others, and all where each is one, stand for themselves. REQUIRES,
+    // also below: sectors of this set.
     [[nodiscard]] std::span<const std::uint8_t> outdoor_probes(const LoadedSector& sector) const {
         return outdoor_probes_.subspan(sector.first_probe, sector.view.probe_count);
     }

@@ -1,0 +1,33 @@
+#include "relit_volume.h"
+
+#include <algorithm>
+
+namespace drtv::tool {
+
+RelitVolume::RelitVolume(const SectorSet& set,
+                         const SceneLight& light,
+                         std::span<const LightShare> lamps,
+                         const VolumeSettings& settings)
+    : set_(set),
+      relit_memory_(RelitProbes::memory_bytes(set.limits(), false)),
+      relit_(relit_memory_, set.limits(), false),
+      volume_memory_(Volume::memory_bytes(settings, set.limits())),
+      volume_(volume_memory_, settings, set.limits()) {
+    relit_.set_light(Shown::now, light);
+    float largest = relit_.largest_fallback();
+    for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
+        const LoadedSector* sector = set.at(slot);
+        if (sector == nullptr)
+            continue;
+        relit_.relight(Shown::now, *sector, light, lamps);
+        largest = std::max(largest, relit_.largest(*sector));
+    }
+    volume_.set_scale(suggest_scale(largest, 0));
+}
+
+const Volume& RelitVolume::at(const Double3& camera) {
+    volume_.update(set_, relit_, camera);
+    return volume_;
+}
+
+}  // namespace drtv::tool
