@@ -269,7 +269,7 @@ TEST(Volume, TexelsHoldTheProbeThatTheirCentreNames) {
 // away, and with and without borders.
 TEST(Volume, TheTalksAddressingFindsTheTexels) {
     for (const bool borders : {true, false}) {
-        for (const std::int32_t away : {0, 1600}) {
+        for (const std::int32_t away : {0, 1600, 3}) {
             OwnedSet set(limits);
             OwnedRelit relit;
             relit->set_light(Shown::now, daylight());
@@ -278,8 +278,11 @@ TEST(Volume, TheTalksAddressingFindsTheTexels) {
                     relit->relight(Shown::now, set.add(random_sector_at({i + away, j + away})), daylight(),
                                    {});
             }
+            std::array<std::int32_t, 3> texels = {20, 24, 8};
+            if (away == 3)
+                texels = {21, 19, 7};
             OwnedVolume volume(
-                VolumeSettings{.size = {20, 24, 8}, .encoding = TexelEncoding::rgba16f, .borders = borders});
+                VolumeSettings{.size = texels, .encoding = TexelEncoding::rgba16f, .borders = borders});
             const Double3 camera = {64.0 * away + 5, 64.0 * away - 9, 8};
             volume->update(*set, *relit, camera);
             const VolumeShaderInputs inputs = volume->shader_inputs();
@@ -295,15 +298,21 @@ TEST(Volume, TheTalksAddressingFindsTheTexels) {
                 // As a GPU does: floats, texel centres at (n + 1/2) / size.
                 std::array<std::int32_t, 3> low;
                 std::array<float, 3> above;
+                float weight = 1;
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     const auto ws = static_cast<float>(at[axis] - inputs.snapped_camera[axis]);
-                    float uv = ws * inputs.uv_scale[axis] + 0.5f + inputs.wrap_offset[axis];
+                    const float in_window = ws * inputs.uv_scale[axis] + 0.5f;
+                    const float to_side =
+                        std::min(in_window, 1 - in_window) * static_cast<float>(texels[axis]);
+                    weight = std::min(weight, to_side - 0.5f);
+                    float uv = in_window + inputs.wrap_offset[axis];
                     uv -= std::floor(uv);
                     uv = uv * inputs.uvw_multiply[axis] + inputs.uvw_add[axis];
                     const float texel = uv * static_cast<float>(size[axis]) - 0.5f;
                     low[axis] = static_cast<std::int32_t>(std::floor(texel));
                     above[axis] = texel - std::floor(texel);
                 }
+                ASSERT_NEAR(weight, expected.weight, 1e-4);
                 float red = 0;
                 for (int corner = 0; corner < 8; ++corner) {
                     float share = 1;

@@ -91,12 +91,11 @@ VolumeShaderInputs Volume::shader_inputs() const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::int32_t size = settings.size[axis];
         const auto length = static_cast<float>(size);
-        const std::int32_t middle = state_->window[axis] + size / 2;
-        inputs.snapped_camera[axis] =
-            static_cast<double>(middle) * static_cast<double>(settings.texel_m[axis]);
+        const double middle = static_cast<double>(state_->window[axis]) + 0.5 * size;
+        inputs.snapped_camera[axis] = middle * static_cast<double>(settings.texel_m[axis]);
         inputs.uv_scale[axis] = 1 / (length * settings.texel_m[axis]);
-        // frac(middle / N - 1/2), of whole numbers: twice N is the common denominator.
-        inputs.wrap_offset[axis] = static_cast<float>(modulo(2 * middle - size, 2 * size)) / (2 * length);
+        // frac(middle / N - 1/2), of whole numbers.
+        inputs.wrap_offset[axis] = static_cast<float>(modulo(state_->window[axis], size)) / length;
         const float with_borders = length + 2;
         inputs.uvw_multiply[axis] = settings.borders ? length / with_borders : 1;
         inputs.uvw_add[axis] = settings.borders ? 1 / with_borders : 0;

@@ -56,7 +56,7 @@ struct TextureBox {
 // What a shader takes, as in the talk's code (slide 40). Places are relative to a camera that was snapped to
 // texels, so that floats are exact far from the origin too.
 struct VolumeShaderInputs {
-    Double3 snapped_camera{};  // subtract it on the CPU, in double
+    Double3 snapped_camera{};  // the window's middle: subtract it on the CPU, in double
     Float3 uv_scale{};         // 1 / (N texel_m)
     Float3 wrap_offset{};      // 0 to 1
     Float3 uvw_multiply{};     // after frac: uvw * uvw_multiply + uvw_add; 1 and 0 without borders
