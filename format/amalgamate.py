@@ -26,6 +26,7 @@ PUBLIC = [
     "sector",
     "sector_set",
     "sky_tile",
+    "tile_texture",
     "view",
     "volume",
 ]

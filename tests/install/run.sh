@@ -24,6 +24,7 @@ for library in $(objdump -p "$work/examples/relight_a_folder" | sed -n 's/^ *NEE
     esac
 done
 for file in bin/drtv include/drtv/version.h include/drtv/view.h include/drtv/volume.h include/drtv/drtv.h lib/libdrtv.so \
+    share/drtv/shaders/drtv_ambient.glsl share/drtv/shaders/drtv_ambient.hlsl share/drtv/shaders/drtv_ambient.wgsl \
     share/doc/drtv_format/SPEC.md share/doc/drtv_format/light.schema.json; do
     [ -e "$work/prefix/$file" ] || fail "$file is not installed"
 done

@@ -1,0 +1,230 @@
+// What the shaders are to find, as the C++ has it: shader_cases FOLDER writes a folder for each case with
+//
+//     texels0..2      the volume's textures as they are uploaded (of an atlas, all in texels0)
+//     tiles           texels of the tile texture, two floats each
+//     numbers         uniforms, floats: see `write_numbers`
+//     points          8 floats each: place relative to the snapped camera, normal, share of the interior, 0
+//     expected        16 floats each: colour, window weight; sky factor, 3 x 0; weights; colours b0 r, b1 g,
+//     b2 b, down r case.json       {"texture": [x, y, z], "format": "rgba8" or "rgba16f", "atlas": bool,
+//     "repeat": bool, "tiles": n}
+#include "tests/format/sectors.h"
+#include "tests/runtime/sets.h"
+
+#include <drtv/ambient.h>
+#include <drtv/tile_texture.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace drtv::test {
+namespace {
+
+constexpr SectorSetLimits limits{.sectors = 36, .probes = 36 * 64, .interiors = 0, .tiles = 64};
+constexpr std::uint32_t tile_sectors = 8;
+
+template <class Value>
+void write_file(const std::filesystem::path& path, std::span<const Value> values) {
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(values.data()),
+               static_cast<std::streamsize>(values.size_bytes()));
+}
+
+// Colours that differ from probe to probe by some tenths; a hole in the grid.
+Sector sector_at(SectorId id) {
+    Sector sector = lattice_sector(id, 8, 3);
+    std::mt19937 random(static_cast<std::uint32_t>(id.i * 131 + id.j * 17 + 77777));
+    const auto code = [&](int least, int most) {
+        return static_cast<std::int16_t>(least +
+                                         static_cast<int>(random() % static_cast<unsigned>(most - least)));
+    };
+    for (Probe& probe : sector.probes) {
+        const std::int16_t seen = code(12000, 32767);
+        probe.sky_visibility = {seen, code(12000, 32767), seen, 0};
+        for (auto& channel : probe.transfer) {
+            for (auto& direction : channel)
+                direction = {code(500, 4000), code(-400, 400), code(-400, 400), code(-400, 400)};
+        }
+    }
+    sector.grid.z_origin_units = -8 * position_units_per_m;
+    sector.grid.cell_height_units = 2048;
+    for (std::size_t n = 0; n < grid_cell_count; ++n) {
+        if (n % grid_size < 3 && n / grid_size % grid_size < 4)
+            sector.grid.cells[n] = no_probe;
+    }
+    return sector;
+}
+
+struct Case {
+    std::string name;
+    VolumeSettings settings;
+    RelightMode mode = RelightMode::accurate;
+    std::int32_t away = 0;  // sectors from the origin
+};
+
+std::vector<Case> cases() {
+    std::vector<Case> all;
+    constexpr std::array<std::int32_t, 3> size = {24, 20, 12};
+    for (const auto& [name, encoding] : {std::pair("rgba8", TexelEncoding::rgba8),
+                                         {"rgba8-sqrt", TexelEncoding::rgba8_sqrt},
+                                         {"rgba16f", TexelEncoding::rgba16f}}) {
+        for (const RelightMode mode : {RelightMode::literal, RelightMode::accurate}) {
+            const std::string of = std::string(name) + (mode == RelightMode::literal ? "-literal" : "");
+            all.push_back({of, {.size = size, .encoding = encoding}, mode});
+            all.push_back({of + "-repeating", {.size = size, .encoding = encoding, .borders = false}, mode});
+            all.push_back({of + "-atlas", {.size = size, .encoding = encoding, .atlas = true}, mode});
+        }
+    }
+    all.push_back(
+        {"far-out", {.size = size, .encoding = TexelEncoding::rgba16f}, RelightMode::accurate, 1600});
+    all.push_back({"odd-size", {.size = {21, 19, 7}, .texel_m = {3, 5, 2.5f}}, RelightMode::accurate, -3});
+    return all;
+}
+
+class Numbers {
+  public:
+    void add(float number) { numbers_.push_back(number); }
+    template <class Vector>
+    void add_all(const Vector& vector) {
+        for (const float number : vector)
+            add(number);
+    }
+    void add(const BasisColours& colours) {
+        for (const Float3& colour : colours)
+            add_all(colour);
+    }
+    [[nodiscard]] std::span<const float> all() const { return numbers_; }
+
+  private:
+    std::vector<float> numbers_;
+};
+
+BasisColours mixed(const BasisColours& a, const BasisColours& b, float share) {
+    BasisColours result;
+    for (std::size_t n = 0; n < basis_count; ++n) {
+        for (std::size_t c = 0; c < channel_count; ++c)
+            result[n][c] = (1 - share) * a[n][c] + share * b[n][c];
+    }
+    return result;
+}
+
+void write_case(const std::filesystem::path& folder, const Case& of) {
+    std::filesystem::create_directories(folder);
+    OwnedSet set(limits);
+    OwnedRelit relit(limits);
+    SceneLight light;
+    light.mode = of.mode;
+    light.sky = gradient_sky({{0.3f, 0.5f, 1}, {0.6f, 0.6f, 0.7f}, {0.4f, 0.2f, 0.1f}}, {1, 1, 1});
+    light.sun = {{4, 3.5f, 3}, {0.6f, 0.3f, 1}};
+    relit->set_light(Shown::now, light);
+    std::vector<std::array<float, 2>> tiles(256 * tile_sectors * tile_sectors, {1, 0});
+    for (std::int32_t j = -2; j < 3; ++j) {
+        for (std::int32_t i = -2; i < 3; ++i) {
+            const SectorId id{of.away + i, of.away + j};
+            if (i == 1 && j == 0)
+                continue;  // missing
+            relit->relight(Shown::now, set.add(sector_at(id)), light, {});
+            write_tile_texels(set->tile(id), id, tile_sectors, tiles);
+        }
+    }
+    OwnedVolume volume(of.settings, limits);
+    volume->set_scale(4);
+    const double origin = 64.0 * of.away;
+    volume->update(*set, *relit, {origin - 300, origin + 200, 0});
+    const Double3 camera = {origin + 11, origin - 7, 5};
+    volume->update(*set, *relit, camera);
+
+    const VolumeShaderInputs inputs = volume->shader_inputs();
+    const TileShaderInputs tile_inputs = tile_shader_inputs(tile_sectors, inputs.snapped_camera);
+    const BasisColours far = relit->fallback();
+    const BasisColours indoors = {{{0.1f, 0.2f, 0.3f}, {0.5f, 0.1f, 0}, {0, 0.4f, 0.2f}, {0.9f, 0.7f, 0.5f}}};
+    Numbers numbers;
+    for (const std::int32_t size : of.settings.size)
+        numbers.add(static_cast<float>(size));
+    numbers.add_all(inputs.uv_scale);
+    numbers.add_all(inputs.wrap_offset);
+    numbers.add_all(inputs.uvw_multiply);
+    numbers.add_all(inputs.uvw_add);
+    numbers.add(inputs.scale);
+    numbers.add(static_cast<float>(of.settings.encoding));
+    numbers.add(of.settings.atlas ? 1 : 0);
+    numbers.add_all(tile_inputs.camera);
+    numbers.add(tile_inputs.columns);
+    numbers.add(tile_inputs.camera_z);
+    numbers.add(far);
+    numbers.add(indoors);
+    numbers.add(of.mode == RelightMode::literal ? 0 : 1);
+
+    Numbers points, expected;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> one(0, 1);
+    std::normal_distribution<float> normal_of(0, 1);
+    constexpr int point_count = 6000;
+    for (int n = 0; n < point_count; ++n) {
+        Float3 place{};
+        Double3 world{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float reach = 0.55f / inputs.uv_scale[axis];  // some lie outside
+            place[axis] = reach * (2 * one(random) - 1);
+            world[axis] = inputs.snapped_camera[axis] + static_cast<double>(place[axis]);
+        }
+        const double x = static_cast<double>(normal_of(random));
+        const double y = static_cast<double>(normal_of(random));
+        const double z = static_cast<double>(normal_of(random));
+        const double length = std::sqrt(x * x + y * y + z * z);
+        const Float3 normal = {static_cast<float>(x / length), static_cast<float>(y / length),
+                               static_cast<float>(z / length)};
+        const float share = n % 2 == 0 ? 0 : one(random);
+        points.add_all(place);
+        points.add_all(normal);
+        points.add(share);
+        points.add(0);
+
+        const Volume::Sample sample = volume->sample(world);
+        const float sky_factor = set->sky_factor(world);
+        BasisColours distant{};
+        distant = mixed(distant, far, sky_factor);
+        const BasisColours outdoors = mixed(distant, sample.colours, sample.weight);
+        expected.add_all(shade_ambient(of.mode, mixed(outdoors, indoors, share), normal));
+        expected.add(sample.weight);
+        expected.add_all(Float4{sky_factor, 0, 0, 0});
+        expected.add_all(basis_weights(of.mode, normal));
+        const bool inside = sample.weight > 0;
+        const BasisColours& held = sample.colours;
+        expected.add_all(inside ? Float4{held[0][0], held[1][1], held[2][2], held[3][0]} : Float4{});
+    }
+    const std::size_t textures = of.settings.atlas ? 1 : 3;
+    for (std::size_t k = 0; k < textures; ++k) {
+        std::vector<std::byte> bytes;
+        for (std::size_t third = k; third < (of.settings.atlas ? 3 : k + 1); ++third)
+            bytes.insert(bytes.end(), volume->texels(third).begin(), volume->texels(third).end());
+        write_file<std::byte>(folder / ("texels" + std::to_string(k)), bytes);
+    }
+    write_file<std::array<float, 2>>(folder / "tiles", tiles);
+    write_file(folder / "numbers", numbers.all());
+    write_file(folder / "points", points.all());
+    write_file(folder / "expected", expected.all());
+    const auto size = volume->texture_size();
+    std::ofstream json(folder / "case.json");
+    json << "{\"texture\": [" << size[0] << ", " << size[1] << ", " << size[2] << "], \"format\": \""
+         << (of.settings.encoding == TexelEncoding::rgba16f ? "rgba16f" : "rgba8")
+         << "\", \"atlas\": " << (of.settings.atlas ? "true" : "false")
+         << ", \"repeat\": " << (of.settings.borders ? "false" : "true")
+         << ", \"tiles\": " << 16 * tile_sectors << "}\n";
+}
+
+}  // namespace
+}  // namespace drtv::test
+
+int main(int argc, char** argv) {
+    if (argc != 2)
+        return std::fputs("usage: shader_cases FOLDER\n", stderr), 1;
+    for (const drtv::test::Case& of : drtv::test::cases())
+        drtv::test::write_case(std::filesystem::path(argv[1]) / of.name, of);
+}
