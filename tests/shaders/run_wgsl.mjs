@@ -11,27 +11,28 @@ if (!adapter)
     throw new Error('no WebGPU adapter: is VK_DRIVER_FILES set to a Vulkan driver?');
 const device = await adapter.requestDevice();
 
-// All of the harness's, used or not.
-const visibility = GPUShaderStage.COMPUTE;
-const volume = { visibility, texture: { sampleType: 'float', viewDimension: '3d' } };
-const layout = device.createBindGroupLayout({
-    entries: [
-        { visibility, buffer: { type: 'read-only-storage' } }, { visibility, buffer: { type: 'read-only-storage' } },
-        { visibility, buffer: { type: 'storage' } }, volume, volume, volume,
-        { visibility, texture: { sampleType: 'unfilterable-float' } }, { visibility, sampler: { type: 'filtering' } },
-    ].map((entry, binding) => ({ ...entry, binding })),
-});
+const bytesOf = { rgba8unorm: 4, rgba16float: 8, rg32float: 8, rgba32float: 16 };
+const isFiltered = (texture) => !texture.format.includes('32');
 
-function texture3d(about, data) {
-    const [width, height, depthOrArrayLayers] = about.texture;
-    const size = { width, height, depthOrArrayLayers };
-    const wide = about.format === 'rgba16f';
+// Buffers, textures, a sampler: used by the shader or not.
+function layoutOf(textures) {
+    const visibility = GPUShaderStage.COMPUTE;
+    const entries = [{ buffer: { type: 'read-only-storage' } }, { buffer: { type: 'read-only-storage' } }, { buffer: { type: 'storage' } }];
+    for (const texture of textures) {
+        const sampleType = isFiltered(texture) ? 'float' : 'unfilterable-float';
+        entries.push({ texture: { sampleType, viewDimension: `${texture.size.length}d` } });
+    }
+    entries.push({ sampler: { type: 'filtering' } });
+    return device.createBindGroupLayout({ entries: entries.map((entry, binding) => ({ ...entry, binding, visibility })) });
+}
+
+function textureOf({ size, format }, data) {
+    const [width, height, depthOrArrayLayers = 1] = size;
+    const extent = { width, height, depthOrArrayLayers };
     const texture = device.createTexture({
-        size, dimension: '3d', format: wide ? 'rgba16float' : 'rgba8unorm',
-        usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
+        size: extent, dimension: `${size.length}d`, format, usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
     });
-    const bytesPerRow = width * (wide ? 8 : 4);
-    device.queue.writeTexture({ texture }, data, { bytesPerRow, rowsPerImage: height }, size);
+    device.queue.writeTexture({ texture }, data, { bytesPerRow: width * bytesOf[format], rowsPerImage: height }, extent);
     return texture;
 }
 
@@ -42,13 +43,11 @@ async function run(job) {
     const messages = (await module.getCompilationInfo()).messages.filter((m) => m.type === 'error');
     if (messages.length > 0)
         throw new Error(`${job.source}:${messages[0].lineNum}: ${messages[0].message}`);
-    const pipeline = await device.createComputePipelineAsync({ layout: device.createPipelineLayout({ bindGroupLayouts: [layout] }), compute: { module, entryPoint: 'main' } });
-    const volumes = [0, 1, 2].map((k) => texture3d(about, file(`texels${about.atlas ? 0 : k}`)));
-    const tiles = device.createTexture({
-        size: [about.tiles, about.tiles], format: 'rg32float',
-        usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
+    const layout = layoutOf(about.textures);
+    const pipeline = await device.createComputePipelineAsync({
+        layout: device.createPipelineLayout({ bindGroupLayouts: [layout] }), compute: { module, entryPoint: 'main' },
     });
-    device.queue.writeTexture({ texture: tiles }, file('tiles'), { bytesPerRow: 8 * about.tiles }, [about.tiles, about.tiles]);
+    const textures = about.textures.map((texture) => textureOf(texture, file(texture.file)));
     const addressMode = about.repeat ? 'repeat' : 'clamp-to-edge';
     const sampler = device.createSampler({
         magFilter: 'linear', minFilter: 'linear',
@@ -63,7 +62,7 @@ async function run(job) {
     const bytes = 2 * points.byteLength;
     const results = device.createBuffer({ size: bytes, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC });
     const resources = [{ buffer: storage(points) }, { buffer: storage(file('numbers')) }, { buffer: results },
-        ...volumes.map((t) => t.createView()), tiles.createView(), sampler];
+        ...textures.map((t) => t.createView()), sampler];
     const entries = resources.map((resource, binding) => ({ binding, resource }));
     const group = device.createBindGroup({ layout, entries });
     const encoder = device.createCommandEncoder();

@@ -1,12 +1,12 @@
-// What the shaders are to find, as the C++ has it: shader_cases FOLDER writes a folder for each case with
+// What the shaders are to find, as the C++ has it: shader_cases FOLDER [POINTS] writes a folder for each
+// case.
 //
-//     texels0..2      the volume's textures as they are uploaded (of an atlas, all in texels0)
-//     tiles           texels of the tile texture, two floats each
-//     numbers         uniforms, floats: see `write_numbers`
-//     points          8 floats each: place relative to the snapped camera, normal, share of the interior, 0
-//     expected        16 floats each: colour, window weight; sky factor, 3 x 0; weights; colours b0 r, b1 g,
-//     b2 b, down r case.json       {"texture": [x, y, z], "format": "rgba8" or "rgba16f", "atlas": bool,
-//     "repeat": bool, "tiles": n}
+// texels0, 1, 2: the volume's textures as they are uploaded (of an atlas, all in texels0).
+// tiles: texels of the tile texture, two floats each.
+// numbers: what the harness makes DrtvVolume, DrtvTiles, two DrtvColours and the mode of, floats.
+// points: 8 floats each: place relative to the snapped camera, normal, share of the interior, 0.
+// expected: 16 floats each: colour, window weight; sky factor, three zeros; weights; b0 r, b1 g, b2 b, down
+// r. case.json: textures (file, size, format), "atlas", "repeat".
 #include "tests/format/sectors.h"
 #include "tests/runtime/sets.h"
 
@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -114,7 +115,7 @@ BasisColours mixed(const BasisColours& a, const BasisColours& b, float share) {
     return result;
 }
 
-void write_case(const std::filesystem::path& folder, const Case& of) {
+void write_case(const std::filesystem::path& folder, const Case& of, int point_count) {
     std::filesystem::create_directories(folder);
     OwnedSet set(limits);
     OwnedRelit relit(limits);
@@ -165,7 +166,6 @@ void write_case(const std::filesystem::path& folder, const Case& of) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> one(0, 1);
     std::normal_distribution<float> normal_of(0, 1);
-    constexpr int point_count = 6000;
     for (int n = 0; n < point_count; ++n) {
         Float3 place{};
         Double3 world{};
@@ -211,20 +211,25 @@ void write_case(const std::filesystem::path& folder, const Case& of) {
     write_file(folder / "points", points.all());
     write_file(folder / "expected", expected.all());
     const auto size = volume->texture_size();
+    const char* format = of.settings.encoding == TexelEncoding::rgba16f ? "rgba16float" : "rgba8unorm";
     std::ofstream json(folder / "case.json");
-    json << "{\"texture\": [" << size[0] << ", " << size[1] << ", " << size[2] << "], \"format\": \""
-         << (of.settings.encoding == TexelEncoding::rgba16f ? "rgba16f" : "rgba8")
-         << "\", \"atlas\": " << (of.settings.atlas ? "true" : "false")
-         << ", \"repeat\": " << (of.settings.borders ? "false" : "true")
-         << ", \"tiles\": " << 16 * tile_sectors << "}\n";
+    json << "{\"textures\": [";
+    for (std::size_t k = 0; k < channel_count; ++k) {
+        json << "{\"file\": \"texels" << (of.settings.atlas ? 0 : k) << "\", \"size\": [" << size[0] << ", "
+             << size[1] << ", " << size[2] << "], \"format\": \"" << format << "\"}, ";
+    }
+    json << "{\"file\": \"tiles\", \"size\": [" << 16 * tile_sectors << ", " << 16 * tile_sectors
+         << "], \"format\": \"rg32float\"}], \"atlas\": " << (of.settings.atlas ? "true" : "false")
+         << ", \"repeat\": " << (of.settings.borders ? "false" : "true") << "}\n";
 }
 
 }  // namespace
 }  // namespace drtv::test
 
 int main(int argc, char** argv) {
-    if (argc != 2)
-        return std::fputs("usage: shader_cases FOLDER\n", stderr), 1;
+    if (argc != 2 && argc != 3)
+        return std::fputs("usage: shader_cases FOLDER [POINTS]\n", stderr), 1;
+    const int points = argc == 3 ? std::atoi(argv[2]) : 6000;
     for (const drtv::test::Case& of : drtv::test::cases())
-        drtv::test::write_case(std::filesystem::path(argv[1]) / of.name, of);
+        drtv::test::write_case(std::filesystem::path(argv[1]) / of.name, of, points);
 }

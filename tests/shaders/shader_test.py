@@ -1,20 +1,26 @@
 """The shaders find what the C++ finds: GLSL, HLSL by way of SPIR-V, and WGSL on Dawn, all on software drivers. Usage:
 SCRIPT CASES_PROGRAM SHADER_FOLDER WEBGPU_MODULE (npm's webgpu: its index.js)"""
+import array
 import json
 import os
 import re
-import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 
 import moderngl
+import passes_twin
 
-CASES_PROGRAM, SHADERS, WEBGPU_MODULE = sys.argv[1:4]
+CASES_PROGRAM, SHADERS, WEBGPU_MODULE = (os.path.abspath(path) for path in sys.argv[1:4])
 VULKAN_DRIVER = "/usr/lib/chromium/vk_swiftshader_icd.json"
 HERE = os.path.dirname(os.path.abspath(__file__))
-COMPONENTS = {"rgba8": (4, "f1"), "rgba16f": (4, "f2")}
+COMPONENTS = {
+    "rgba8unorm": (4, "f1"),
+    "rgba16float": (4, "f2"),
+    "rg32float": (2, "f4"),
+    "rgba32float": (4, "f4"),
+}
 ARITHMETIC = 1e-5  # of values around 1: sums of a dozen floats
 # Drivers filter 8-bit texels with weights of 8 bits. A code is scale / 255, near the scale twice that by square roots;
 # four weights add up to as much as this.
@@ -28,8 +34,7 @@ def read(path, mode="r"):
 
 
 def floats(path):
-    data = read(path, "rb")
-    return struct.unpack(f"<{len(data) // 4}f", data)
+    return array.array("f", read(path, "rb"))
 
 
 class Case:
@@ -38,11 +43,23 @@ class Case:
         self.about = json.loads(read(os.path.join(folder, "case.json")))
         self.expected = floats(os.path.join(folder, "expected"))
 
+    @property
+    def harness(self):
+        return (
+            "harness_passes" if "mask" in [listed["file"] for listed in self.about["textures"]] else "harness"
+        )
+
+    @property
+    def include(self):
+        return "drtv_passes" if self.harness == "harness_passes" else "drtv_ambient"
+
     def defines(self, manual):
         flags = {"MANUAL": manual, "ATLAS": self.about["atlas"], "REPEAT": self.about["repeat"]}
         return "".join(f"#define {name}\n" for name, holds in flags.items() if holds)
 
     def filtered_bound(self):
+        if self.harness == "harness_passes":
+            return ARITHMETIC
         scale, encoding = floats(os.path.join(self.folder, "numbers"))[15:17]
         return FILTERED * GAIN * (scale if encoding == 0 else 2 * scale if encoding == 1 else 1)
 
@@ -57,39 +74,39 @@ class Gpu:
     def results(self, source, case):
         context, about = self.context, case.about
         shader = context.compute_shader(source)
-        count, kind = COMPONENTS[about["format"]]
-        size = about["texture"][:]
         kept = []
-        for k in range(1 if about["atlas"] else 3):
-            data = case.bytes_of(f"texels{k}")
-            texture = context.texture3d(tuple(size), count, data, alignment=1, dtype=kind)
+        for unit, listed in enumerate(about["textures"]):
+            make = context.texture3d if len(listed["size"]) == 3 else context.texture
+            count, kind = COMPONENTS[listed["format"]]
+            texture = make(
+                tuple(listed["size"]), count, case.bytes_of(listed["file"]), alignment=1, dtype=kind
+            )
             texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
-            texture.repeat_x = texture.repeat_y = texture.repeat_z = about["repeat"]
-            for unit in [k] if not about["atlas"] else range(3):
-                texture.use(unit)
+            texture.repeat_x = texture.repeat_y = about["repeat"]
+            if len(listed["size"]) == 3:
+                texture.repeat_z = about["repeat"]
+            texture.use(unit)
             kept.append(texture)
-        tiles = context.texture((about["tiles"],) * 2, 2, case.bytes_of("tiles"), alignment=1, dtype="f4")
-        tiles.use(3)
         points = context.buffer(case.bytes_of("points"))
         numbers = context.buffer(case.bytes_of("numbers"))
         results = context.buffer(reserve=4 * len(case.expected))
         for binding, buffer in enumerate((points, numbers, results)):
             buffer.bind_to_storage_buffer(binding)
         shader.run(group_x=(len(case.expected) // 16 + 63) // 64)
-        found = struct.unpack(f"<{len(case.expected)}f", results.read())
-        for thing in [shader, tiles, points, numbers, results, *kept]:
+        found = array.array("f", results.read())
+        for thing in [shader, points, numbers, results, *kept]:
             thing.release()
         return found
 
 
 def glsl_source(include, case, manual):
-    text = read(os.path.join(HERE, "harness.glsl")).replace("// HERE", include)
+    text = read(os.path.join(HERE, f"{case.harness}.glsl")).replace("// HERE", include)
     return "#version 450\n" + case.defines(manual) + text
 
 
 def hlsl_source(include, case, manual, folder):
     """By glslang to SPIR-V, which is valid, and by spirv-cross to GLSL; and to MSL."""
-    text = case.defines(manual) + read(os.path.join(HERE, "harness.hlsl")).replace("// HERE", include)
+    text = case.defines(manual) + read(os.path.join(HERE, f"{case.harness}.hlsl")).replace("// HERE", include)
     hlsl, spirv = os.path.join(folder, "harness.hlsl"), os.path.join(folder, "harness.spv")
     with open(hlsl, "w", encoding="utf-8") as file:
         file.write(text)
@@ -110,6 +127,7 @@ def hlsl_source(include, case, manual, folder):
 def with_bindings(glsl):
     """Bindings of the harness: samplers and buffers by name."""
     units = {"volume0": 0, "volume1": 1, "volume2": 2, "tile_texture": 3}
+    units |= {"mask_texture": 0, "ambient_texture": 1, "surface_texture": 2}
     buffers = {"points": 0, "numbers": 1, "results": 2}
 
     def sampler(match):
@@ -148,10 +166,10 @@ class Dawn:
         self.folder = folder
 
     def all_results(self, language, jobs):
-        harness = read(os.path.join(HERE, f"harness.{language}"))
         listed = []
         for n, (include, case, manual) in enumerate(jobs):
             flags = {"MANUAL": manual, "ATLAS": case.about["atlas"], "REPEAT": case.about["repeat"]}
+            harness = read(os.path.join(HERE, f"{case.harness}.{language}"))
             consts = "".join(f"const {name}: bool = {str(holds).lower()};\n" for name, holds in flags.items())
             source, out = (os.path.join(self.folder, f"{n}.{ending}") for ending in ("wgsl", "results"))
             with open(source, "w", encoding="utf-8") as file:
@@ -184,7 +202,10 @@ class Shaders(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        subprocess.run([CASES_PROGRAM, cls.folder.name], check=True)
+        subprocess.run(
+            [CASES_PROGRAM, cls.folder.name, os.environ.get("DRTV_SHADER_POINTS", "6000")], check=True
+        )
+        passes_twin.make_case(os.path.join(cls.folder.name, "passes"))
         cls.cases = {
             name: Case(os.path.join(cls.folder.name, name)) for name in sorted(os.listdir(cls.folder.name))
         }
@@ -197,14 +218,17 @@ class Shaders(unittest.TestCase):
         cls.folder.cleanup()
         cls.scratch.cleanup()
 
-    def include(self, language):
-        return read(os.path.join(SHADERS, f"drtv_ambient.{language}"))
+    @staticmethod
+    def include(language, name="drtv_ambient"):
+        return read(os.path.join(SHADERS, f"{name}.{language}"))
 
     def test_every_case_in_every_language(self):
         for language, driver in self.drivers.items():
-            include = self.include(language)
             asked = [(name, manual) for name in self.cases for manual in (True, False)]
-            jobs = [(include, self.cases[name], manual) for name, manual in asked]
+            jobs = [
+                (self.include(language, self.cases[name].include), self.cases[name], manual)
+                for name, manual in asked
+            ]
             worst = {True: 0, False: 0}
             for (name, manual), found in zip(asked, driver.all_results(language, jobs)):
                 case = self.cases[name]
@@ -225,19 +249,19 @@ class Shaders(unittest.TestCase):
 
     def test_a_wrong_constant_shows(self):
         for language, driver in self.drivers.items():
-            include = self.include(language)
-            numbers = sorted(set(re.findall(r"\b\d+\.\d+\b", re.sub(r"//.*", "", include))))
-            cases = [self.cases[name] for name in ("rgba16f", "rgba8-literal-atlas")]
-            jobs = [
-                (with_wrong_constant(include, number), case, True) for number in numbers for case in cases
-            ]
-            errors = [
-                error_of(found, case) for (_, case, _), found in zip(jobs, driver.all_results(language, jobs))
-            ]
-            self.assertGreater(len(numbers), 8)
-            for n, number in enumerate(numbers):
-                with self.subTest(language=language, number=number):
-                    self.assertGreater(max(errors[2 * n : 2 * n + 2]), 10 * ARITHMETIC)
+            for names in (("rgba16f", "rgba8-literal-atlas"), ("passes", "passes")):
+                cases = [self.cases[name] for name in names]
+                include = self.include(language, cases[0].include)
+                numbers = sorted(set(re.findall(r"\b\d+\.\d+\b", re.sub(r"//.*", "", include))))
+                jobs = [
+                    (with_wrong_constant(include, number), case, True) for number in numbers for case in cases
+                ]
+                results = driver.all_results(language, jobs)
+                errors = [error_of(found, case) for (_, case, _), found in zip(jobs, results)]
+                self.assertGreater(len(numbers), 5)
+                for n, number in enumerate(numbers):
+                    with self.subTest(language=language, include=cases[0].include, number=number):
+                        self.assertGreater(max(errors[2 * n : 2 * n + 2]), 10 * ARITHMETIC)
 
 
 if __name__ == "__main__":

@@ -1,21 +1,19 @@
 #!/usr/bin/env python3
-"""Makes drtv_ambient.glsl, .hlsl and .wgsl of drtv_ambient.shader. Usage: make_shaders.py [--check]
+"""Makes .glsl, .hlsl and .wgsl of drtv_ambient.shader and drtv_passes.shader. Usage: make_shaders.py [--check]
 
 The one text is plain enough that words alone tell the languages apart: functions, structs, constants, locals (`const`
 where they do not change), if, for, return; no arrays, no out parameters, no choice by `?`. --check only says whether
-the three are up to date.
+they are up to date.
 """
 import os
 import re
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-NAME = "drtv_ambient"
-MADE = "// Made by make_shaders.py of drtv_ambient.shader: change it there. SPDX-License-Identifier: MIT\n"
+NAMES = ("drtv_ambient", "drtv_passes")
 FETCHES = ("DRTV_FETCH", "DRTV_FETCH_TILE", "DRTV_FETCH_AMBIENT", "DRTV_FETCH_SURFACE", "DRTV_FETCH_MASK")
 TYPES = r"float|int|bool|vec2|vec3|vec4|ivec2|Drtv\w+"
 
-GLSL_GUARD = "#ifndef DRTV_AMBIENT\n#define DRTV_AMBIENT\n"
 HLSL_WORDS = {
     "vec2": "float2",
     "vec3": "float3",
@@ -34,16 +32,20 @@ WGSL_TYPES = {
 }
 
 
-def glsl(text):
+def guarded(name, text):
+    return f"#ifndef {name.upper()}\n#define {name.upper()}\n{text}#endif\n"
+
+
+def glsl(name, text):
     # In ES a constant's value is known when it is compiled.
-    return MADE + GLSL_GUARD + re.sub(r"^(\s+)const ", r"\1", text, flags=re.MULTILINE) + "#endif\n"
+    return guarded(name, re.sub(r"^(\s+)const ", r"\1", text, flags=re.MULTILINE))
 
 
-def hlsl(text):
+def hlsl(name, text):
     for word, other in HLSL_WORDS.items():
         text = re.sub(rf"\b{word}\b", other, text)
     text = re.sub(r"^const (\w+ DRTV_)", r"static const \1", text, flags=re.MULTILINE)
-    return MADE + GLSL_GUARD + text + "#endif\n"
+    return guarded(name, text)
 
 
 def wgsl_type(name):
@@ -56,7 +58,7 @@ def wgsl_function(match):
     return f"fn {name}({', '.join(f'{word}: {wgsl_type(kind)}' for kind, word in listed)}) -> {wgsl_type(result)} {{"
 
 
-def wgsl(text):
+def wgsl(_, text):
     code, out = text.split("\n"), []
     in_struct = False
     for line in code:
@@ -84,23 +86,26 @@ def wgsl(text):
             for fetch in FETCHES:
                 line = re.sub(rf"\b{fetch}\(", f"{fetch.lower()}(", line)
         out.append(line + slashes + comment)
-    return MADE + "\n".join(out)
+    return "\n".join(out)
 
 
 def main():
-    with open(os.path.join(HERE, f"{NAME}.shader"), encoding="utf-8") as file:
-        text = file.read()
     stale = []
-    for ending, made in (("glsl", glsl(text)), ("hlsl", hlsl(text)), ("wgsl", wgsl(text))):
-        path = os.path.join(HERE, f"{NAME}.{ending}")
-        if sys.argv[1:] == ["--check"]:
-            with open(path, encoding="utf-8") as file:
-                stale += [path] if file.read() != made else []
-            continue
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(made)
+    for name in NAMES:
+        with open(os.path.join(HERE, f"{name}.shader"), encoding="utf-8") as file:
+            text = file.read()
+        said = f"// Made by make_shaders.py of {name}.shader: change it there. SPDX-License-Identifier: MIT\n"
+        for ending, translate in (("glsl", glsl), ("hlsl", hlsl), ("wgsl", wgsl)):
+            path = os.path.join(HERE, f"{name}.{ending}")
+            made = said + translate(name, text)
+            if sys.argv[1:] == ["--check"]:
+                with open(path, encoding="utf-8") as file:
+                    stale += [path] if file.read() != made else []
+                continue
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(made)
     if stale:
-        raise SystemExit(f"not of this drtv_ambient.shader, run make_shaders.py: {', '.join(stale)}")
+        raise SystemExit(f"not of the present .shader files, run make_shaders.py: {', '.join(stale)}")
 
 
 if __name__ == "__main__":
