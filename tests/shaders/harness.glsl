@@ -61,7 +61,16 @@ void main() {
         DrtvColours there = drtv_volume_colours(volume, place);
         held = vec4(there.b0.x, there.b1.y, there.b2.z, there.down.x);
     }
-    float found[16] = float[16](colour.x, colour.y, colour.z, weight, drtv_sky_factor(tiles, place), 0.0, 0.0, 0.0,
+    float inside = weight >= 1.0 ? 1.0 : 0.0;  // not in the window's outermost texels, which the C++ does not sample
+    vec3 probe = drtv_view_probe(volume, mode, place, normal);
+    vec3 owner = drtv_view_owner(volume, place);
+    vec3 shown = drtv_view_weights(mode, normal);
+    vec3 distance_share = drtv_view_fallback(volume, tiles, place);
+    vec3 clipped = drtv_view_clipped(volume, place);
+    vec3 age = drtv_view_age(80.0 * points[p + 6u]);
+    vec3 views = vec3(0.125 * (probe.x + owner.x + owner.y + owner.z) * inside, shown.x + 2.0 * shown.y + 4.0 * shown.z + age.x + age.y,
+        distance_share.x + 2.0 * distance_share.z + (clipped.x + 2.0 * clipped.z) * inside);
+    float found[16] = float[16](colour.x, colour.y, colour.z, weight, drtv_sky_factor(tiles, place), views.x, views.y, views.z,
                                 weights.x, weights.y, weights.z, weights.w, held.x, held.y, held.z, held.w);
     for (int n = 0; n < 16; ++n)
         results[id * 16u + uint(n)] = found[n];

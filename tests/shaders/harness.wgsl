@@ -78,7 +78,16 @@ fn colours_at(n: i32) -> DrtvColours {
         let there = drtv_volume_colours(volume, place);
         held = vec4<f32>(there.b0.x, there.b1.y, there.b2.z, there.down.x);
     }
-    let found = array<f32, 16>(colour.x, colour.y, colour.z, weight, drtv_sky_factor(tiles, place), 0.0, 0.0, 0.0,
+    let inside = select(0.0, 1.0, weight >= 1.0);
+    let probe = drtv_view_probe(volume, mode, place, normal);
+    let owner = drtv_view_owner(volume, place);
+    let shown = drtv_view_weights(mode, normal);
+    let distance_share = drtv_view_fallback(volume, tiles, place);
+    let clipped = drtv_view_clipped(volume, place);
+    let age = drtv_view_age(80.0 * points[p + 6]);
+    let views = vec3<f32>(0.125 * (probe.x + owner.x + owner.y + owner.z) * inside, shown.x + 2.0 * shown.y + 4.0 * shown.z + age.x + age.y,
+        distance_share.x + 2.0 * distance_share.z + (clipped.x + 2.0 * clipped.z) * inside);
+    let found = array<f32, 16>(colour.x, colour.y, colour.z, weight, drtv_sky_factor(tiles, place), views.x, views.y, views.z,
                                weights.x, weights.y, weights.z, weights.w, held.x, held.y, held.z, held.w);
     for (var n = 0u; n < 16; n++) {
         results[id * 16 + n] = found[n];

@@ -5,14 +5,15 @@
 // tiles: texels of the tile texture, two floats each.
 // numbers: what the harness makes DrtvVolume, DrtvTiles, two DrtvColours and the mode of, floats.
 // points: 8 floats each: place relative to the snapped camera, normal, share of the interior, 0.
-// expected: 16 floats each: colour, window weight; sky factor, three zeros; weights; b0 r, b1 g, b2 b, down
-// r. case.json: textures (file, size, format), "atlas", "repeat".
+// expected: 16 floats each: colour, window weight; sky factor, the views in three sums; weights; b0 r, b1 g,
+// b2 b, down r. case.json: textures (file, size, format), "atlas", "repeat".
 #include "tests/format/sectors.h"
 #include "tests/runtime/sets.h"
 
 #include <drtv/ambient.h>
 #include <drtv/tile_texture.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -67,6 +68,8 @@ struct Case {
     VolumeSettings settings;
     RelightMode mode = RelightMode::accurate;
     std::int32_t away = 0;  // sectors from the origin
+    float scale = 4;
+    float brightness = 1;
 };
 
 std::vector<Case> cases() {
@@ -85,6 +88,9 @@ std::vector<Case> cases() {
     all.push_back(
         {"far-out", {.size = size, .encoding = TexelEncoding::rgba16f}, RelightMode::accurate, 1600});
     all.push_back({"odd-size", {.size = {21, 19, 7}, .texel_m = {3, 5, 2.5f}}, RelightMode::accurate, -3});
+    all.push_back({"clipped", {.size = size}, RelightMode::accurate, 0, 0.5f});
+    all.push_back(
+        {"bright", {.size = size, .encoding = TexelEncoding::rgba16f}, RelightMode::accurate, 0, 4, 1e5f});
     return all;
 }
 
@@ -115,6 +121,46 @@ BasisColours mixed(const BasisColours& a, const BasisColours& b, float share) {
     return result;
 }
 
+// What the views show, summed up as the harness does it. `centre`: what the volume holds in the middle of the
+// place's texel.
+Float3 views_of(const VolumeSettings& settings, float scale, RelightMode mode, const Float3& normal,
+                float share, const Volume::Sample& sample, const Volume::Sample& centre, float sky_factor) {
+    const Float3 probe = shade_ambient(mode, centre.colours, normal);
+    constexpr std::array<Float4, 3> mixing = {
+        {{1.3f, 2.1f, 2.9f, 1.7f}, {2.7f, 1.1f, 1.9f, 2.3f}, {1.6f, 2.8f, 1.2f, 2.5f}}};
+    float owner = 0;
+    for (const Float4& factors : mixing) {
+        float sum = 0;
+        for (std::size_t c = 0; c < channel_count; ++c)
+            sum += (centre.colours[0][c] + centre.colours[1][c]) / scale * factors[c];
+        sum += (centre.colours[3][0] + centre.colours[3][1]) / scale * factors[3];
+        owner += std::abs((sum - std::floor(sum)) * 2 - 1);
+    }
+    Float4 weights = basis_weights(mode, normal);
+    for (float& weight : weights)
+        weight = std::max(weight, 0.0f);
+    const auto shown = [&](std::size_t b) { return std::min(weights[b] + 0.4f * weights[3], 1.0f); };
+    const float fresh = std::clamp(1 - 80 * share / 64, 0.0f, 1.0f);
+    float most = 0;
+    float least = 1e9f;
+    Float3 largest{};
+    for (const Float3& colour : centre.colours) {
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            most = std::max(most, colour[c]);
+            least = std::min(least, colour[c]);
+            largest[c] = std::max(largest[c], colour[c]);
+        }
+    }
+    const float end = settings.encoding == TexelEncoding::rgba16f ? 65504 : scale;
+    const float grey = std::clamp((largest[0] + largest[1] + largest[2]) / (3 * scale), 0.0f, 1.0f);
+    const float clipped = most >= 0.9995f * end ? 1 : least <= 0.00001f * scale ? 2 : 3 * grey;
+    const float inside = sample.weight >= 1 ? 1.0f : 0.0f;
+    const float far = 1 - sample.weight;
+    return {0.125f * (probe[0] + owner) * inside,
+            shown(0) + 2 * shown(1) + 4 * shown(2) + fresh + fresh * fresh,
+            far + 2 * far * (1 - sky_factor) + clipped * inside};
+}
+
 void write_case(const std::filesystem::path& folder, const Case& of, int point_count) {
     std::filesystem::create_directories(folder);
     OwnedSet set(limits);
@@ -123,6 +169,10 @@ void write_case(const std::filesystem::path& folder, const Case& of, int point_c
     light.mode = of.mode;
     light.sky = gradient_sky({{0.3f, 0.5f, 1}, {0.6f, 0.6f, 0.7f}, {0.4f, 0.2f, 0.1f}}, {1, 1, 1});
     light.sun = {{4, 3.5f, 3}, {0.6f, 0.3f, 1}};
+    for (Float4& channel : light.sky) {
+        for (float& coefficient : channel)
+            coefficient *= of.brightness;
+    }
     relit->set_light(Shown::now, light);
     std::vector<std::array<float, 2>> tiles(256 * tile_sectors * tile_sectors, {1, 0});
     for (std::int32_t j = -2; j < 3; ++j) {
@@ -135,7 +185,7 @@ void write_case(const std::filesystem::path& folder, const Case& of, int point_c
         }
     }
     OwnedVolume volume(of.settings, limits);
-    volume->set_scale(4);
+    volume->set_scale(of.scale);
     const double origin = 64.0 * of.away;
     volume->update(*set, *relit, {origin - 300, origin + 200, 0});
     const Double3 camera = {origin + 11, origin - 7, 5};
@@ -169,10 +219,17 @@ void write_case(const std::filesystem::path& folder, const Case& of, int point_c
     for (int n = 0; n < point_count; ++n) {
         Float3 place{};
         Double3 world{};
+        Double3 centre{};  // of the texel
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const float reach = 0.55f / inputs.uv_scale[axis];  // some lie outside
-            place[axis] = reach * (2 * one(random) - 1);
-            world[axis] = inputs.snapped_camera[axis] + static_cast<double>(place[axis]);
+            const double texel_m = static_cast<double>(of.settings.texel_m[axis]);
+            double texels = 0;
+            do {
+                place[axis] = reach * (2 * one(random) - 1);
+                world[axis] = inputs.snapped_camera[axis] + static_cast<double>(place[axis]);
+                texels = world[axis] / texel_m;
+            } while (std::abs(texels - std::round(texels)) < 0.001);  // where floats may choose another
+            centre[axis] = (std::floor(texels) + 0.5) * texel_m;
         }
         const double x = static_cast<double>(normal_of(random));
         const double y = static_cast<double>(normal_of(random));
@@ -193,7 +250,9 @@ void write_case(const std::filesystem::path& folder, const Case& of, int point_c
         const BasisColours outdoors = mixed(distant, sample.colours, sample.weight);
         expected.add_all(shade_ambient(of.mode, mixed(outdoors, indoors, share), normal));
         expected.add(sample.weight);
-        expected.add_all(Float4{sky_factor, 0, 0, 0});
+        expected.add(sky_factor);
+        expected.add_all(views_of(of.settings, inputs.scale, of.mode, normal, share, sample,
+                                  volume->sample(centre), sky_factor));
         expected.add_all(basis_weights(of.mode, normal));
         const bool inside = sample.weight > 0;
         const BasisColours& held = sample.colours;
@@ -220,7 +279,8 @@ void write_case(const std::filesystem::path& folder, const Case& of, int point_c
     }
     json << "{\"file\": \"tiles\", \"size\": [" << 16 * tile_sectors << ", " << 16 * tile_sectors
          << "], \"format\": \"rg32float\"}], \"atlas\": " << (of.settings.atlas ? "true" : "false")
-         << ", \"repeat\": " << (of.settings.borders ? "false" : "true") << "}\n";
+         << ", \"repeat\": " << (of.settings.borders ? "false" : "true")
+         << ", \"magnitude\": " << (of.brightness > 1 ? 65504 : 1) << "}\n";
 }
 
 }  // namespace

@@ -173,4 +173,63 @@ DrtvColours drtv_outdoors(DrtvVolume volume, DrtvTiles tiles, DrtvColours far, f
 float3 drtv_ambient(int mode, DrtvColours outdoors, DrtvColours indoors, float share, float3 normal) {
     return drtv_shade(mode, drtv_mixed(outdoors, indoors, share), normal);
 }
+
+// ---- Views that show what the runtime does, for looking. Colours are 0 to 1.
+
+// The centre of the texel that holds a place.
+float3 drtv_texel_centre(DrtvVolume volume, float3 place) {
+    const float3 texel = floor(drtv_window_place(volume, place) * volume.size) + float3(0.5, 0.5, 0.5);
+    return (texel / volume.size - float3(0.5, 0.5, 0.5)) / volume.uv_scale;
+}
+
+// What the probe of a place's texel alone would give, without a filter.
+float3 drtv_view_probe(DrtvVolume volume, int mode, float3 place, float3 normal) {
+    return drtv_shade(mode, drtv_volume_colours(volume, drtv_texel_centre(volume, place)), normal);
+}
+
+// A colour for each probe: which texels one probe owns.
+float3 drtv_view_owner(DrtvVolume volume, float3 place) {
+    const float3 uvw = drtv_volume_uvw(volume, drtv_texel_centre(volume, place));
+    const float4 texel = (drtv_volume_texel(volume, 0, uvw) + drtv_volume_texel(volume, 1, uvw)) / volume.scale;
+    const float3 mixed = float3(dot(texel, float4(1.3, 2.1, 2.9, 1.7)), dot(texel, float4(2.7, 1.1, 1.9, 2.3)), dot(texel, float4(1.6, 2.8, 1.2, 2.5)));
+    return abs(frac(mixed) * 2.0 - float3(1.0, 1.0, 1.0));
+}
+
+// The three upper weights as red, green and blue, brighter by the downward one; what is below 0 is dark.
+float3 drtv_view_weights(int mode, float3 normal) {
+    const float4 w = max(drtv_weights(mode, normal), float4(0.0, 0.0, 0.0, 0.0));
+    return min(w.xyz + float3(0.4 * w.w, 0.4 * w.w, 0.4 * w.w), float3(1.0, 1.0, 1.0));
+}
+
+// Red where the distance lights, green where the volume does, blue by what the distance has lost to its tile.
+float3 drtv_view_fallback(DrtvVolume volume, DrtvTiles tiles, float3 place) {
+    const float weight = drtv_window_weight(volume, place);
+    return float3(1.0 - weight, weight, (1.0 - weight) * (1.0 - drtv_sky_factor(tiles, place)));
+}
+
+// Red where a texel is at its encoding's end, blue where it holds a 0; the texel's light else, grey.
+float3 drtv_view_clipped(DrtvVolume volume, float3 place) {
+    const DrtvColours held = drtv_volume_colours(volume, drtv_texel_centre(volume, place));
+    const float3 most = max(max(held.b0, held.b1), max(held.b2, held.down));
+    const float3 least = min(min(held.b0, held.b1), min(held.b2, held.down));
+    float end = volume.scale;
+    if (volume.encoding == DRTV_RGBA16F) {
+        end = 65504.0;
+    }
+    if (max(most.x, max(most.y, most.z)) >= 0.9995 * end) {
+        return float3(1.0, 0.0, 0.0);
+    }
+    if (min(least.x, min(least.y, least.z)) <= 0.00001 * volume.scale) {
+        return float3(0.0, 0.0, 1.0);
+    }
+    const float grey = clamp((most.x + most.y + most.z) / (3.0 * volume.scale), 0.0, 1.0);
+    return float3(grey, grey, grey);
+}
+
+// From white, a texel just written, to black, one of 64 frames ago; of a texture of frame numbers that the game writes
+// where Volume::dirty says.
+float3 drtv_view_age(float frames) {
+    const float fresh = clamp(1.0 - frames / 64.0, 0.0, 1.0);
+    return float3(fresh, fresh * fresh, fresh * fresh);
+}
 #endif

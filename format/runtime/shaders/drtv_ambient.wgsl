@@ -171,3 +171,62 @@ fn drtv_outdoors(volume: DrtvVolume, tiles: DrtvTiles, far: DrtvColours, at: vec
 fn drtv_ambient(mode: i32, outdoors: DrtvColours, indoors: DrtvColours, share: f32, normal: vec3<f32>) -> vec3<f32> {
     return drtv_shade(mode, drtv_mixed(outdoors, indoors, share), normal);
 }
+
+// ---- Views that show what the runtime does, for looking. Colours are 0 to 1.
+
+// The centre of the texel that holds a place.
+fn drtv_texel_centre(volume: DrtvVolume, place: vec3<f32>) -> vec3<f32> {
+    let texel: vec3<f32> = floor(drtv_window_place(volume, place) * volume.size) + vec3<f32>(0.5, 0.5, 0.5);
+    return (texel / volume.size - vec3<f32>(0.5, 0.5, 0.5)) / volume.uv_scale;
+}
+
+// What the probe of a place's texel alone would give, without a filter.
+fn drtv_view_probe(volume: DrtvVolume, mode: i32, place: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    return drtv_shade(mode, drtv_volume_colours(volume, drtv_texel_centre(volume, place)), normal);
+}
+
+// A colour for each probe: which texels one probe owns.
+fn drtv_view_owner(volume: DrtvVolume, place: vec3<f32>) -> vec3<f32> {
+    let uvw: vec3<f32> = drtv_volume_uvw(volume, drtv_texel_centre(volume, place));
+    let texel: vec4<f32> = (drtv_volume_texel(volume, 0, uvw) + drtv_volume_texel(volume, 1, uvw)) / volume.scale;
+    let mixed: vec3<f32> = vec3<f32>(dot(texel, vec4<f32>(1.3, 2.1, 2.9, 1.7)), dot(texel, vec4<f32>(2.7, 1.1, 1.9, 2.3)), dot(texel, vec4<f32>(1.6, 2.8, 1.2, 2.5)));
+    return abs(fract(mixed) * 2.0 - vec3<f32>(1.0, 1.0, 1.0));
+}
+
+// The three upper weights as red, green and blue, brighter by the downward one; what is below 0 is dark.
+fn drtv_view_weights(mode: i32, normal: vec3<f32>) -> vec3<f32> {
+    let w: vec4<f32> = max(drtv_weights(mode, normal), vec4<f32>(0.0, 0.0, 0.0, 0.0));
+    return min(w.xyz + vec3<f32>(0.4 * w.w, 0.4 * w.w, 0.4 * w.w), vec3<f32>(1.0, 1.0, 1.0));
+}
+
+// Red where the distance lights, green where the volume does, blue by what the distance has lost to its tile.
+fn drtv_view_fallback(volume: DrtvVolume, tiles: DrtvTiles, place: vec3<f32>) -> vec3<f32> {
+    let weight: f32 = drtv_window_weight(volume, place);
+    return vec3<f32>(1.0 - weight, weight, (1.0 - weight) * (1.0 - drtv_sky_factor(tiles, place)));
+}
+
+// Red where a texel is at its encoding's end, blue where it holds a 0; the texel's light else, grey.
+fn drtv_view_clipped(volume: DrtvVolume, place: vec3<f32>) -> vec3<f32> {
+    let held: DrtvColours = drtv_volume_colours(volume, drtv_texel_centre(volume, place));
+    let most: vec3<f32> = max(max(held.b0, held.b1), max(held.b2, held.down));
+    let least: vec3<f32> = min(min(held.b0, held.b1), min(held.b2, held.down));
+    var end: f32 = volume.scale;
+    if (volume.encoding == DRTV_RGBA16F) {
+        end = 65504.0;
+    }
+    if (max(most.x, max(most.y, most.z)) >= 0.9995 * end) {
+        return vec3<f32>(1.0, 0.0, 0.0);
+    }
+    if (min(least.x, min(least.y, least.z)) <= 0.00001 * volume.scale) {
+        return vec3<f32>(0.0, 0.0, 1.0);
+    }
+    let grey: f32 = clamp((most.x + most.y + most.z) / (3.0 * volume.scale), 0.0, 1.0);
+    return vec3<f32>(grey, grey, grey);
+}
+
+// From white, a texel just written, to black, one of 64 frames ago; of a texture of frame numbers that the game writes
+// where Volume::dirty says.
+fn drtv_view_age(frames: f32) -> vec3<f32> {
+    let fresh: f32 = clamp(1.0 - frames / 64.0, 0.0, 1.0);
+    return vec3<f32>(fresh, fresh * fresh, fresh * fresh);
+}
