@@ -200,11 +200,12 @@ class Mask(unittest.TestCase):
             if not on_floor or frame.shown[4 * n + 3] > 15:
                 continue
             expected = min(max(0.5 + signed_distance(asked) / SOFT_M, 0), 1)
-            errors.append(abs(share - expected))
+            if 0.02 < expected < 0.98:
+                errors.append(abs(share - expected))
         fading = sum(1 for share in shares if 0.1 < share < 0.9)
         self.assertGreater(fading, 500)
-        self.assertGreater(len(errors), 5000)
-        self.assertLess(sum(errors) / len(errors), 0.03)
+        self.assertGreater(len(errors), 1000)
+        self.assertLess(sum(errors) / len(errors), 0.06)
         print(f"mask blurred: mean error {sum(errors) / len(errors):.3f}, {fading} pixels fade")
 
 

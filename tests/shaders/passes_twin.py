@@ -38,12 +38,14 @@ def mask_blur(mask, pixel, axis):
     shown = mask.at(*pixel)[1]
     if shown <= 0:
         return 0, shown
-    reach = 0.5 * SOFT_M * PIXELS_PER_METRE / shown
+    metres_per_pixel = shown / PIXELS_PER_METRE
+    reach = 0.5 * SOFT_M / metres_per_pixel
+    radius = (math.floor(reach + 0.5) + 0.5) * metres_per_pixel
     total = count = 0
     for n in range(-8, 9):
         moved = math.floor(n * reach / 8 + 0.5)
         value, metres = mask.at(pixel[0] + axis[0] * moved, pixel[1] + axis[1] * moved)
-        if abs(metres - shown) <= SOFT_M:
+        if math.hypot(moved * metres_per_pixel, metres - shown) <= radius:
             total, count = total + min(max(value, 0), 1), count + 1
     return total / max(count, 1), shown
 

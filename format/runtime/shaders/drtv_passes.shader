@@ -27,19 +27,23 @@ float drtv_mask_winding(bool front_facing, float mesh_distance, float surface_di
 // Interiors, second and third pass, along (1, 0) and then (0, 1): gives the share of the interior, which goes from 0 to 1
 // over `soft` metres across the mesh (clamp(1/2 + d / soft, 0, 1) where the mesh is flat, and 1 m is usual), and again
 // the distance. `pixels_per_metre`: of the picture, at a distance of 1 m. Surfaces in front of and behind others do not
-// mix; a pixel without a distance has no share.
+// mix, and what is seen at an angle fades over as much of its own length; a pixel without a distance has no share.
 vec2 drtv_mask_blur(ivec2 pixel, ivec2 axis, float pixels_per_metre, float soft) {
     const float shown = DRTV_FETCH_MASK(pixel).y;
     if (shown <= 0.0) {
         return vec2(0.0, shown);
     }
-    const float reach = 0.5 * soft * pixels_per_metre / shown;
+    const float metres_per_pixel = shown / pixels_per_metre;
+    const float reach = 0.5 * soft / metres_per_pixel;
+    const float radius = (floor(reach + 0.5) + 0.5) * metres_per_pixel;
     float sum = 0.0;
     float count = 0.0;
     for (int n = -8; n <= 8; n = n + 1) {
         const float moved = floor(float(n) * reach / 8.0 + 0.5);
         const vec2 tap = DRTV_FETCH_MASK(pixel + axis * int(moved));
-        if (abs(tap.y - shown) <= soft) {
+        const float across = moved * metres_per_pixel;
+        const float apart = tap.y - shown;
+        if (across * across + apart * apart <= radius * radius) {
             sum = sum + clamp(tap.x, 0.0, 1.0);
             count = count + 1.0;
         }

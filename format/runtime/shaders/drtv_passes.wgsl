@@ -28,19 +28,23 @@ fn drtv_mask_winding(front_facing: bool, mesh_distance: f32, surface_distance: f
 // Interiors, second and third pass, along (1, 0) and then (0, 1): gives the share of the interior, which goes from 0 to 1
 // over `soft` metres across the mesh (clamp(1/2 + d / soft, 0, 1) where the mesh is flat, and 1 m is usual), and again
 // the distance. `pixels_per_metre`: of the picture, at a distance of 1 m. Surfaces in front of and behind others do not
-// mix; a pixel without a distance has no share.
+// mix, and what is seen at an angle fades over as much of its own length; a pixel without a distance has no share.
 fn drtv_mask_blur(pixel: vec2<i32>, axis: vec2<i32>, pixels_per_metre: f32, soft: f32) -> vec2<f32> {
     let shown: f32 = drtv_fetch_mask(pixel).y;
     if (shown <= 0.0) {
         return vec2<f32>(0.0, shown);
     }
-    let reach: f32 = 0.5 * soft * pixels_per_metre / shown;
+    let metres_per_pixel: f32 = shown / pixels_per_metre;
+    let reach: f32 = 0.5 * soft / metres_per_pixel;
+    let radius: f32 = (floor(reach + 0.5) + 0.5) * metres_per_pixel;
     var sum: f32 = 0.0;
     var count: f32 = 0.0;
     for (var n: i32 = -8; n <= 8; n = n + 1) {
         let moved: f32 = floor(f32(n) * reach / 8.0 + 0.5);
         let tap: vec2<f32> = drtv_fetch_mask(pixel + axis * i32(moved));
-        if (abs(tap.y - shown) <= soft) {
+        let across: f32 = moved * metres_per_pixel;
+        let apart: f32 = tap.y - shown;
+        if (across * across + apart * apart <= radius * radius) {
             sum = sum + clamp(tap.x, 0.0, 1.0);
             count = count + 1.0;
         }
