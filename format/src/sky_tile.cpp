@@ -56,14 +56,21 @@ SkyTile sky_tile_of(const SectorView& sector) {
     return tile;
 }
 
+double tile_height_m(const SkyTile& tile, std::size_t column) {
+    const std::uint32_t above = std::uint32_t{tile.height[column]} << tile.z_shift;
+    return (static_cast<double>(tile.z_origin_units) + above) * double{position_unit_m};
+}
+
+float tile_visibility(const SkyTile& tile, std::size_t column) {
+    return static_cast<float>(tile.visibility[column]) / 255.0f;
+}
+
 float sky_factor(const SkyTile& tile, std::size_t x, std::size_t y, double z_m) {
     const std::size_t column = x + tile_size * y;
-    const double units =
-        static_cast<double>(tile.z_origin_units) + (std::uint32_t{tile.height[column]} << tile.z_shift);
-    const double above_m = z_m - units * double{position_unit_m};
+    const double above_m = z_m - tile_height_m(tile, column);
     // A height that is no number counts as on the ground.
     const float share = above_m > 0 ? static_cast<float>(std::min(above_m / double{tile_fade_m}, 1.0)) : 0.0f;
-    const float hidden = 1 - static_cast<float>(tile.visibility[column]) / 255.0f;
+    const float hidden = 1 - tile_visibility(tile, column);
     return 1 - hidden * (1 - share);
 }
 

@@ -164,41 +164,42 @@ std::optional<FilePaths> sector_files(const std::string& path) {
     return files;
 }
 
-std::optional<RawSector> load_raw_sector(const std::string& path, int& exit_code) {
-    const FileRead file = read_file(path);
-    if (!file.ok()) {
-        complain(file.error);
-        exit_code = exit_unreadable;
-        return std::nullopt;
-    }
-    RawSector sector;
-    ReadStatus status = unpack_sector(file.bytes, sector.bytes);
-    if (status.ok())
-        status = open_sector(sector.bytes, sector.view);
-    if (!status.ok()) {
-        complain(path + ": " + status.message);
-        exit_code = exit_invalid;
-        return std::nullopt;
-    }
-    return sector;
-}
+namespace {
 
-std::optional<Sector> load_sector(const std::string& path, int& exit_code, FileBytes* bytes) {
+// What `open(bytes, opened)` makes of a file's bytes.
+template <class Opened, class Open>
+std::optional<Opened> opened_file(const std::string& path, int& exit_code, const Open& open) {
     FileRead file = read_file(path);
     if (!file.ok()) {
         complain(file.error);
         exit_code = exit_unreadable;
         return std::nullopt;
     }
-    std::optional<Sector> sector(std::in_place);
-    if (const ReadStatus status = read_sector(file.bytes, *sector); !status.ok()) {
+    std::optional<Opened> opened(std::in_place);
+    if (const ReadStatus status = open(file.bytes, *opened); !status.ok()) {
         complain(path + ": " + status.message);
         exit_code = exit_invalid;
         return std::nullopt;
     }
-    if (bytes != nullptr)
-        *bytes = std::move(file.bytes);
-    return sector;
+    return opened;
+}
+
+}  // namespace
+
+std::optional<RawSector> load_raw_sector(const std::string& path, int& exit_code) {
+    return opened_file<RawSector>(path, exit_code, [](const FileBytes& file, RawSector& sector) {
+        const ReadStatus status = unpack_sector(file, sector.bytes);
+        return status.ok() ? open_sector(sector.bytes, sector.view) : status;
+    });
+}
+
+std::optional<Sector> load_sector(const std::string& path, int& exit_code, FileBytes* bytes) {
+    return opened_file<Sector>(path, exit_code, [bytes](FileBytes& file, Sector& sector) {
+        const ReadStatus status = read_sector(file, sector);
+        if (status.ok() && bytes != nullptr)
+            *bytes = std::move(file);
+        return status;
+    });
 }
 
 }  // namespace drtv::tool

@@ -2,6 +2,7 @@
 
 #include "bakerd/bake/sector_bake.h"
 #include "bakerd/trace/device.h"
+#include "tests/bake/worlds.h"
 
 #include <stdexcept>
 
@@ -9,16 +10,10 @@ namespace drtv::test {
 
 BakedMap::BakedMap(const GltfBuilder& builder, const bake::Settings& settings,
                    const std::vector<map::SectorCoordinate>& sectors) {
-    auto imported = builder.import();
-    if (!imported)
-        throw std::runtime_error(imported.error());
-    map_ = std::make_shared<const map::Map>(std::move(*imported));
+    world_ = open_world(builder);
     const trace::FloatMode float_mode;
-    const auto world = bake::World::open(trace::Device::open().value(), map_);
-    if (!world)
-        throw std::runtime_error(world.error());
-    for (const map::SectorCoordinate sector : sectors.empty() ? (*world)->sectors() : sectors) {
-        const auto baked = bake::bake_sector(**world, sector, settings);
+    for (const map::SectorCoordinate sector : sectors.empty() ? world_->sectors() : sectors) {
+        const auto baked = bake::bake_sector(*world_, sector, settings);
         if (!baked)
             throw std::runtime_error(baked.error());
         files_.push_back(baked->sector);

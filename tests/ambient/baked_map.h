@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bakerd/bake/settings.h"
+#include "bakerd/bake/world.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/map/map.h"
 #include "tests/map/gltf_builder.h"
@@ -18,13 +19,13 @@ class BakedMap {
     BakedMap(const GltfBuilder& builder, const bake::Settings& settings,
              const std::vector<map::SectorCoordinate>& sectors = {});
 
-    [[nodiscard]] const map::Map& map() const { return *map_; }
+    [[nodiscard]] const map::Map& map() const { return world_->map(); }
     [[nodiscard]] const SectorSet& set() const { return *set_; }
     [[nodiscard]] const std::vector<const LoadedSector*>& sectors() const { return sectors_; }
     [[nodiscard]] const std::vector<Sector>& files() const { return files_; }
 
   private:
-    std::shared_ptr<const map::Map> map_;
+    std::shared_ptr<bake::World> world_;
     std::vector<Sector> files_;
     OwnedSet set_;
     std::vector<const LoadedSector*> sectors_;

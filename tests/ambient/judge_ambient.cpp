@@ -1,6 +1,7 @@
 #include "tests/ambient/judge_ambient.h"
 
 #include "tests/ambient/vectors.h"
+#include "tests/reference/in_parallel.h"
 #include "tests/reference/reference_random.h"
 #include "tests/reference/reference_walk.h"
 
@@ -13,14 +14,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <mutex>
 #include <numbers>
 #include <stdexcept>
-#include <thread>
 
 namespace drtv::test {
 namespace {
@@ -176,7 +175,7 @@ class Judge {
         const std::size_t count = std::min(settings_.probes, probes_.size());
         std::vector<Place> places(count);
         std::vector<Truth> truths(count);
-        in_parallel(count, [&](std::size_t n) {
+        reference::in_parallel(settings_.threads, count, [&](std::size_t n) {
             const auto& [sector, p] = probes_[(2 * n + 1) * probes_.size() / (2 * count)];
             truths[n] = truth_at(place_of(*sector, p), normals_);
             places[n] = ProbeJudge(moments_, normals_).judge(*sector, p, truths[n]);
@@ -186,7 +185,8 @@ class Judge {
 
         const std::vector<Surface> surfaces = choose_surfaces();
         places.assign(surfaces.size(), {});
-        in_parallel(surfaces.size(), [&](std::size_t n) { places[n] = judge(surfaces[n]); });
+        reference::in_parallel(settings_.threads, surfaces.size(),
+                               [&](std::size_t n) { places[n] = judge(surfaces[n]); });
         judgement.at_surfaces = errors_of(places);
         return judgement;
     }
@@ -287,18 +287,6 @@ class Judge {
         Truth truth = truth_at(place_of(*probe.sector, probe.probe), basis_directions());
         const std::scoped_lock lock(mutex_);
         return known_.try_emplace(key, std::move(truth)).first->second;
-    }
-
-    template <class Use>
-    void in_parallel(std::size_t count, const Use& use) const {
-        std::atomic<std::size_t> next = 0;
-        std::vector<std::jthread> threads;
-        for (unsigned t = 0; t < settings_.threads; ++t) {
-            threads.emplace_back([&] {
-                for (std::size_t n = next++; n < count; n = next++)
-                    use(n);
-            });
-        }
     }
 
     static std::string metres(float offset_m) {

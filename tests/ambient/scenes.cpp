@@ -1,5 +1,7 @@
 #include "tests/ambient/scenes.h"
 
+#include "tests/bake/worlds.h"
+
 #include <glm/vector_relational.hpp>
 
 namespace drtv::test {
@@ -15,10 +17,7 @@ bool is_between(const glm::vec3& place, const glm::vec3& low, const glm::vec3& h
 }
 
 void SceneSource::add(const Shape& in_world, const glm::vec3& albedo, const std::string& role) {
-    Shape shape = in_world;
-    for (glm::vec3& p : shape.positions)
-        p = gltf_from_world(p);
-    b.place(shape, role, b.add_material({.colour = {albedo, 1}}));
+    b.place(in_gltf(in_world), role, b.add_material({.colour = {albedo, 1}}));
 }
 
 void SceneSource::add_box(const glm::vec3& low, const glm::vec3& high, const glm::vec3& albedo) {
@@ -27,10 +26,10 @@ void SceneSource::add_box(const glm::vec3& low, const glm::vec3& high, const glm
 
 void SceneSource::add_interior(const glm::vec3& low, const glm::vec3& high, const glm::vec3& probe) {
     const std::string name = "room " + std::to_string(b.json["nodes"].size());
-    Shape shape = box(low, high);
-    for (glm::vec3& p : shape.positions)
-        p = gltf_from_world(p);
-    b.add_node({.mesh = b.add_mesh(shape), .name = name, .role = "interior", .probe = name + "'s probe"});
+    b.add_node({.mesh = b.add_mesh(in_gltf(box(low, high))),
+                .name = name,
+                .role = "interior",
+                .probe = name + "'s probe"});
     b.add_node(
         {.translation = glm::dvec3(gltf_from_world(probe)), .name = name + "'s probe", .role = "probe"});
 }

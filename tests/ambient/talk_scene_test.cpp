@@ -5,7 +5,6 @@
 #include "tests/reference/reference_ambient.h"
 
 #include <drtv/ambient.h>
-#include <drtv/write.h>
 
 #include <gtest/gtest.h>
 
@@ -145,22 +144,17 @@ TEST(TalkScene, ShowsNoBlueInside) {
 // Slide 58: beyond the volumes, and when the sectors themselves are gone, their tiles tell the jungle from
 // the clearing.
 TEST(TalkScene, KeepsTheJunglesContrastInTheDistance) {
-    SectorSetLimits limits;
-    std::vector<std::byte> memory(SectorSet::memory_bytes(limits));
-    SectorSet set(memory, limits);
-    std::vector<std::vector<std::uint8_t>> files;
+    OwnedSet set;
     for (const Sector& sector : baked_talk_scene().files())
-        files.push_back(write_sector(sector));
-    for (const auto& file : files)
-        ASSERT_EQ(set.load(file), LoadStatus::loaded);
+        set.add(sector);
     SceneLight sky;
     sky.sky = constant_sky({1, 1, 1});
-    OwnedRelit relit(limits);
+    OwnedRelit relit(set->limits());
     relit->set_light(Shown::now, sky);
-    OwnedVolume volume({.outdoors = true}, limits);
-    volume->update(set, *relit, {-1000, 0, 0});
+    OwnedVolume volume({.outdoors = true}, set->limits());
+    volume->update(*set, *relit, {-1000, 0, 0});
     const auto far = [&](const glm::vec3& at) {
-        return ambient_in(*volume, set, sky, {}, {.at = as_place(at), .offset_m = 0}).colour[1];
+        return ambient_in(*volume, *set, sky, {}, {.at = as_place(at), .offset_m = 0}).colour[1];
     };
     const float jungle = far(under_leaves);
     const float clearing = far(in_clearing);
@@ -174,13 +168,13 @@ TEST(TalkScene, KeepsTheJunglesContrastInTheDistance) {
     EXPECT_LT(jungle, 0.5f * clearing);
     EXPECT_NEAR(jungle / clearing, truth(under_leaves) / truth(in_clearing), 0.15);
     for (const SectorId id : {SectorId{0, 0}, SectorId{1, 0}, SectorId{2, 0}})
-        ASSERT_TRUE(set.drop(id));
-    set.retire();
-    volume->update(set, *relit, {-1000, 0, 0});
+        ASSERT_TRUE(set->drop(id));
+    set->retire();
+    volume->update(*set, *relit, {-1000, 0, 0});
     EXPECT_EQ(far(under_leaves), jungle);
     EXPECT_EQ(far(in_clearing), clearing);
-    SectorSet unknown(memory, limits);
-    EXPECT_EQ(unknown.sky_factor(as_place(under_leaves)), 1) << "that it is the tiles";
+    OwnedSet unknown;
+    EXPECT_EQ(unknown->sky_factor(as_place(under_leaves)), 1) << "that it is the tiles";
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "tests/ambient/talk_scene.h"
 
 #include <drtv/ambient.h>
-#include <drtv/write.h>
 
 #include <gtest/gtest.h>
 
@@ -34,21 +33,12 @@ SceneLight afternoon() {
 }
 
 // `hole`: of three sectors in a row the middle one is missing, but its tile is known.
-struct World {
-    explicit World(bool hole) {
-        for (const Sector& sector : baked_talk_scene().files())
-            files.push_back(write_sector(sector));
-        for (const auto& file : files)
-            EXPECT_EQ(set.load(file), LoadStatus::loaded);
-        EXPECT_EQ(hole && set.drop({1, 0}), hole);
-        set.retire();
-    }
-
-    SectorSetLimits limits;
-    std::vector<std::vector<std::uint8_t>> files;
-    std::vector<std::byte> memory = std::vector<std::byte>(SectorSet::memory_bytes(limits));
-    SectorSet set{memory, limits};
-};
+void load_world(OwnedSet& set, bool hole) {
+    for (const Sector& sector : baked_talk_scene().files())
+        set.add(sector);
+    EXPECT_EQ(hole && set->drop({1, 0}), hole);
+    set->retire();
+}
 
 struct Seen {
     double change = 0;  // the largest within a step, over the largest colour
@@ -91,11 +81,12 @@ constexpr std::array<Float3, 3> normals = {{{0, 0, 1}, {0.8f, 0.6f, 0}, {0, -0.6
 TEST(Walks, InAVolumeNeverJump) {
     const SceneLight light = afternoon();
     for (const bool hole : {false, true}) {
-        World world(hole);
-        OwnedRelit relit(world.limits);
+        OwnedSet set;
+        load_world(set, hole);
+        OwnedRelit relit(set->limits());
         relit->set_light(Shown::now, light);
         for (std::int32_t i = 0; i < 3; ++i) {
-            if (const LoadedSector* sector = world.set.find({i, 0}))
+            if (const LoadedSector* sector = set->find({i, 0}))
                 relit->relight(Shown::now, *sector, light, {});
         }
         VolumeSettings settings;
@@ -104,18 +95,18 @@ TEST(Walks, InAVolumeNeverJump) {
         settings.outdoors = hole;
         for (const bool follows : {true, false}) {
             settings.outdoors = !settings.outdoors;  // each way once with a hole and once without
-            OwnedVolume volume(settings, world.limits);
-            volume->update(world.set, *relit, {96, 32, 2});
+            OwnedVolume volume(settings, set->limits());
+            volume->update(*set, *relit, {96, 32, 2});
             for (const Walk& walk : walks) {
                 for (const Float3& normal : normals) {
                     const Seen seen = seen_on(walk, [&](const Double3& at) {
                         if (follows)
-                            volume->update(world.set, *relit, at);
+                            volume->update(*set, *relit, at);
                         AmbientPlace place;
                         place.at = at;
                         place.normal = normal;
                         place.interiors = false;
-                        return ambient_in(*volume, world.set, light, {}, place).colour;
+                        return ambient_in(*volume, *set, light, {}, place).colour;
                     });
                     EXPECT_LT(seen.change, largest_step)
                         << "hole " << hole << ", follows " << follows << ", from " << walk.from[0];
@@ -129,7 +120,8 @@ TEST(Walks, InAVolumeNeverJump) {
 TEST(Walks, BetweenEightCellsNeverJump) {
     const SceneLight light = afternoon();
     for (const bool hole : {false, true}) {
-        const World world(hole);
+        OwnedSet set;
+        load_world(set, hole);
         double by_nearest = 0;
         for (const Walk& walk : walks) {
             for (const Float3& normal : normals) {
@@ -140,7 +132,7 @@ TEST(Walks, BetweenEightCellsNeverJump) {
                         place.normal = normal;
                         place.sampling = sampling;
                         place.interiors = false;
-                        return ambient_at(world.set, light, {}, place).colour;
+                        return ambient_at(*set, light, {}, place).colour;
                     });
                 };
                 const Seen seen = seen_by(Sampling::trilinear);

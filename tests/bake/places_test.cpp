@@ -44,12 +44,6 @@ std::size_t count_in(const Places& all, const glm::vec3& low, const glm::vec3& h
     }));
 }
 
-// A shape given in world axes, as glTF has it.
-Shape in_gltf(Shape shape) {
-    for (glm::vec3& p : shape.positions)
-        p = glm::vec3(gltf_from_world(p));
-    return shape;
-}
 Shape world_box(const glm::vec3& low, const glm::vec3& high, bool inwards = false) {
     return in_gltf(inwards ? room(low, high) : box(low, high));
 }

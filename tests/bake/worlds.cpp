@@ -85,6 +85,12 @@ double under_constant_sky(const bake::ProbeLight& light, std::size_t channel, st
     return static_cast<double>(light.transfer[channel][basis][0]) / static_cast<double>(sh_y0);
 }
 
+Shape in_gltf(Shape shape) {
+    for (glm::vec3& p : shape.positions)
+        p = gltf_from_world(p);
+    return shape;
+}
+
 Shape room(const glm::vec3& low, const glm::vec3& high) {
     Shape shape = box(low, high);
     for (std::size_t n = 0; n + 2 < shape.indices.size(); n += 3)

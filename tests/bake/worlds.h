@@ -38,6 +38,9 @@ struct Clutter {
 [[nodiscard]] double under_constant_sky(const bake::ProbeLight& light, std::size_t channel,
                                         std::size_t basis);
 
+// A shape given in world axes, as glTF has it.
+[[nodiscard]] Shape in_gltf(Shape shape);
+
 // A box with its fronts inwards: a room.
 [[nodiscard]] Shape room(const glm::vec3& low, const glm::vec3& high);
 

@@ -1,5 +1,6 @@
 #include "tests/reference/check_compare.h"
 
+#include "tests/reference/in_parallel.h"
 #include "tests/reference/reference_local.h"
 
 #include <drtv/conventions.h>
@@ -8,12 +9,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <iostream>
 #include <limits>
 #include <map>
-#include <thread>
 
 namespace drtv::reference {
 namespace {
@@ -206,15 +205,8 @@ std::vector<Quantity> compare(const map::Map& map, const Sector& sector, const C
     const Scene scene(map, comparison.region());
     std::cerr << scene.triangle_count() << " triangles within reach\n";
     std::vector<ProbeResult> results(comparison.chosen().size());
-    std::atomic<std::size_t> next = 0;
-    std::vector<std::jthread> threads;
-    for (unsigned t = 0; t < settings.threads; ++t) {
-        threads.emplace_back([&] {
-            for (std::size_t n = next++; n < results.size(); n = next++)
-                results[n] = comparison.run(scene, comparison.chosen()[n]);
-        });
-    }
-    threads.clear();
+    in_parallel(settings.threads, results.size(),
+                [&](std::size_t n) { results[n] = comparison.run(scene, comparison.chosen()[n]); });
 
     std::vector<Quantity> quantities;
     const auto add = [&](const std::string& name, auto numbers_of) {

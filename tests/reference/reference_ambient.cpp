@@ -29,13 +29,9 @@ class Gatherer {
           moments_(moments),
           options_(options),
           walk_{scene, point, options.reach_m, Random(options.seed)},
+          map_lights_(walk_.lights()),
           result_(moments.size(), std::vector<AmbientLight>(normals.size())),
-          arriving_(moments.size()) {
-        for (const map::Light& light : scene.lights()) {
-            if (light.kind == map::LightKind::directional || walk_.within_reach(glm::dvec3(light.position)))
-                map_lights_.push_back(&light);
-        }
-    }
+          arriving_(moments.size()) {}
 
     std::vector<std::vector<AmbientLight>> run() {
         const double side = options_.strata;

@@ -30,12 +30,9 @@ struct Batch {
 class Integrator {
   public:
     Integrator(const Scene& scene, const glm::dvec3& position, const Options& options)
-        : options_(options), walk_{scene, position, options.reach_m, Random(options.seed)} {
-        for (const map::Light& light : scene.lights()) {
-            if (light.kind == map::LightKind::directional || walk_.within_reach(glm::dvec3(light.position)))
-                lights_.push_back(&light);
-        }
-    }
+        : options_(options),
+          walk_{scene, position, options.reach_m, Random(options.seed)},
+          lights_(walk_.lights()) {}
 
     Batch run_batch() {
         Batch batch;

@@ -32,6 +32,15 @@ bool Walk::within_reach(const glm::dvec3& position) const {
     return glm::length(position - probe) <= reach_m;
 }
 
+std::vector<const map::Light*> Walk::lights() const {
+    std::vector<const map::Light*> lights;
+    for (const map::Light& light : scene.lights()) {
+        if (light.kind == map::LightKind::directional || within_reach(glm::dvec3(light.position)))
+            lights.push_back(&light);
+    }
+    return lights;
+}
+
 glm::dvec3 Walk::lit(const glm::dvec3& point, const Incidence& light) {
     // Where the way to a directional light leaves the sphere of reach; `point` lies in it.
     const glm::dvec3 from_probe = point - probe;

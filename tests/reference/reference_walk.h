@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace drtv::reference {
 
@@ -34,6 +35,9 @@ struct Walk {
 
     // Whether a light at `position` counts for this probe.
     [[nodiscard]] bool within_reach(const glm::dvec3& position) const;
+
+    // Those of the map that count for this probe.
+    [[nodiscard]] std::vector<const map::Light*> lights() const;
 
     // Radiance that the surface at `point` scatters of the light to the side of its normal.
     [[nodiscard]] glm::dvec3 scattered(const SurfaceHit& hit, const glm::dvec3& point,

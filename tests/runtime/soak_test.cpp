@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <random>
@@ -73,14 +72,9 @@ class Game {
     Game(const VolumeSettings& settings, int poison)
         : set_memory_(poisoned(SectorSet::memory_bytes(limits), poison)),
           relit_memory_(poisoned(RelitProbes::memory_bytes(limits, true), poison)),
-          volume_memory_(poisoned(Volume::memory_bytes(settings, limits), poison)),
           set_(set_memory_, limits),
           relit_(relit_memory_, limits, true),
-          volume_(volume_memory_, settings, limits) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto texels = volume_.texels(k);
-            std::memset(const_cast<std::byte*>(texels.data()), poison, texels.size());
-        }
+          volume_(settings, limits, poison) {
         for (int j = -3; j < 3; ++j) {
             for (int i = -3; i < 3; ++i)
                 files_[{i, j}] = random_file({i, j});
@@ -91,7 +85,7 @@ class Game {
             light.sun = {{1, 1, 1}, {0.3f, 0.2f, 1}};
         relit_.set_light(Shown::now, lights_[0]);
         relit_.set_light(Shown::next, lights_[1]);
-        volume_.set_scale(16);
+        volume_->set_scale(16);
     }
 
     void step() {
@@ -137,13 +131,13 @@ class Game {
                 std::swap(lights_[0], lights_[1]);
                 break;
             case 9:
-                volume_.set_scale(one_of(2) == 0 ? 16.0f : 32.0f);
+                volume_->set_scale(one_of(2) == 0 ? 16.0f : 32.0f);
                 break;
             default:
                 for (double& axis : camera_)
                     axis += one_of(9) - 4;
         }
-        volume_.update(set_, relit_, camera_);
+        volume_->update(set_, relit_, camera_);
     }
 
     void look() {
@@ -152,10 +146,10 @@ class Game {
             asked.at = place();
             asked.normal = {0.6f, 0, one_of(2) == 0 ? 0.8f : -0.8f};
             asked.offset_m = one_of(2) == 0 ? 0.0f : 1.0f;
-            asked.interiors = volume_.settings().outdoors;
+            asked.interiors = volume_->settings().outdoors;
             expect_light(ambient_at(set_, lights_[0], lamps_, asked), asked.at);
-            expect_light(ambient_in(volume_, set_, lights_[0], lamps_, asked), asked.at);
-            const Volume::Sample sample = volume_.sample(asked.at);
+            expect_light(ambient_in(*volume_, set_, lights_[0], lamps_, asked), asked.at);
+            const Volume::Sample sample = volume_->sample(asked.at);
             for (const Float3& colour : sample.colours) {
                 for (const float channel : colour)
                     ASSERT_TRUE(channel >= 0 && channel < 33) << channel;
@@ -167,10 +161,10 @@ class Game {
     void expect_written() {
         std::array<std::vector<std::byte>, 3> before;
         for (std::size_t k = 0; k < 3; ++k)
-            before[k].assign(volume_.texels(k).begin(), volume_.texels(k).end());
-        volume_.update_all(set_, relit_, camera_);
+            before[k].assign(volume_->texels(k).begin(), volume_->texels(k).end());
+        volume_->update_all(set_, relit_, camera_);
         for (std::size_t k = 0; k < 3; ++k)
-            ASSERT_TRUE(std::ranges::equal(before[k], volume_.texels(k)));
+            ASSERT_TRUE(std::ranges::equal(before[k], volume_->texels(k)));
     }
 
     // That the game came everywhere.
@@ -210,10 +204,9 @@ class Game {
     std::map<std::pair<int, int>, std::vector<std::uint8_t>> files_;
     std::vector<std::byte> set_memory_;
     std::vector<std::byte> relit_memory_;
-    std::vector<std::byte> volume_memory_;
     SectorSet set_;
     RelitProbes relit_;
-    Volume volume_;
+    test::OwnedVolume volume_;
     std::array<SceneLight, 2> lights_;  // now and next
     std::vector<LightShare> lamps_;
     Double3 camera_{};

@@ -47,6 +47,11 @@ static_assert(sizeof(SkyTile) == 800);
 // other.
 [[nodiscard]] SkyTile sky_tile_of(const SectorView& sector);
 
+// Of a column, in metres: where its probe stands. REQUIRES, also below: a column of the tile.
+[[nodiscard]] double tile_height_m(const SkyTile& tile, std::size_t column);
+// 0 to 1.
+[[nodiscard]] float tile_visibility(const SkyTile& tile, std::size_t column);
+
 // What is left of the open sky's ambient light at a height above the column, 0 to 1: 1 - (1 - v)(1 - h / 16
 // m), h clamped to 0..16 m. REQUIRES: x, y < tile_size.
 [[nodiscard]] float sky_factor(const SkyTile& tile, std::size_t x, std::size_t y, double z_m);

@@ -54,10 +54,10 @@ vec2 drtv_mask_blur(ivec2 pixel, ivec2 axis, float pixels_per_metre, float soft)
     return vec2(sum / max(count, 1.0), shown);
 }
 
-// How much a texel of the small buffer says of a surface: 1 where both are one flat surface.
-float drtv_alike(vec4 texel_surface, vec3 normal, float metres) {
-    float apart = (texel_surface.w - metres) / (0.05 * metres);
-    float turned = max(dot(texel_surface.xyz, normal), 0.0);
+// How much a texel of the small buffer says of a surface: 1 where both are one flat surface. `apart`: their distances'
+// difference, in twentieths.
+float drtv_alike(vec3 texel_normal, vec3 normal, float apart) {
+    float turned = max(dot(texel_normal, normal), 0.0);
     float squared = turned * turned;
     return squared * squared / (1.0 + apart * apart * apart * apart);
 }
@@ -80,7 +80,7 @@ vec3 drtv_upsampled(vec2 at, vec3 normal, float metres) {
             vec4 surface = DRTV_FETCH_SURFACE(texel);
             float apart = (surface.w - metres) / (0.05 * metres);
             float least = 0.0001 / (1.0 + apart * apart);
-            float weight = share_x * share_y * drtv_alike(surface, normal, metres) + least;
+            float weight = share_x * share_y * drtv_alike(surface.xyz, normal, apart) + least;
             sum = sum + weight * DRTV_FETCH_AMBIENT(texel).xyz;
             weights = weights + weight;
         }

@@ -52,10 +52,10 @@ fn drtv_mask_blur(pixel: vec2<i32>, axis: vec2<i32>, pixels_per_metre: f32, soft
     return vec2<f32>(sum / max(count, 1.0), shown);
 }
 
-// How much a texel of the small buffer says of a surface: 1 where both are one flat surface.
-fn drtv_alike(texel_surface: vec4<f32>, normal: vec3<f32>, metres: f32) -> f32 {
-    let apart: f32 = (texel_surface.w - metres) / (0.05 * metres);
-    let turned: f32 = max(dot(texel_surface.xyz, normal), 0.0);
+// How much a texel of the small buffer says of a surface: 1 where both are one flat surface. `apart`: their distances'
+// difference, in twentieths.
+fn drtv_alike(texel_normal: vec3<f32>, normal: vec3<f32>, apart: f32) -> f32 {
+    let turned: f32 = max(dot(texel_normal, normal), 0.0);
     let squared: f32 = turned * turned;
     return squared * squared / (1.0 + apart * apart * apart * apart);
 }
@@ -78,7 +78,7 @@ fn drtv_upsampled(at: vec2<f32>, normal: vec3<f32>, metres: f32) -> vec3<f32> {
             let surface: vec4<f32> = drtv_fetch_surface(texel);
             let apart: f32 = (surface.w - metres) / (0.05 * metres);
             let least: f32 = 0.0001 / (1.0 + apart * apart);
-            let weight: f32 = share_x * share_y * drtv_alike(surface, normal, metres) + least;
+            let weight: f32 = share_x * share_y * drtv_alike(surface.xyz, normal, apart) + least;
             sum = sum + weight * drtv_fetch_ambient(texel).xyz;
             weights = weights + weight;
         }

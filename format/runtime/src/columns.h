@@ -36,6 +36,11 @@ struct Column {
     return {static_cast<std::int32_t>(x >> bits), static_cast<std::int32_t>(y >> bits)};
 }
 
+[[nodiscard]] inline std::int32_t modulo(std::int32_t n, std::int32_t length) {
+    const std::int32_t rest = n % length;
+    return rest < 0 ? rest + length : rest;
+}
+
 [[nodiscard]] inline std::size_t within_sector(std::int64_t column) {
     return static_cast<std::size_t>(column) % grid_size;
 }

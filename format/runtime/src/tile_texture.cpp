@@ -19,8 +19,8 @@ TileShaderInputs tile_shader_inputs(std::uint32_t sectors, const Double3& snappe
 }
 
 std::array<std::uint32_t, 2> tile_texel(std::uint32_t sectors, SectorId id) {
-    const auto within = [n = std::int64_t{sectors}](std::int32_t sector) {
-        return static_cast<std::uint32_t>(((sector % n) + n) % n * std::int64_t{tile_size});
+    const auto within = [n = static_cast<std::int32_t>(sectors)](std::int32_t sector) {
+        return static_cast<std::uint32_t>(modulo(sector, n)) * static_cast<std::uint32_t>(tile_size);
     };
     return {within(id.i), within(id.j)};
 }
@@ -34,12 +34,8 @@ void write_tile_texels(const SkyTile* tile,
     for (std::size_t n = 0; n < tile_size * tile_size; ++n) {
         std::array<float, 2>& texel = texels[x0 + n % tile_size + across * (y0 + n / tile_size)];
         texel = {1, 0};
-        if (tile == nullptr)
-            continue;
-        const std::int64_t units =
-            std::int64_t{tile->z_origin_units} + (std::int64_t{tile->height[n]} << tile->z_shift);
-        texel = {static_cast<float>(tile->visibility[n]) / 255.0f,
-                 static_cast<float>(static_cast<double>(units) / position_units_per_m)};
+        if (tile != nullptr)
+            texel = {tile_visibility(*tile, n), static_cast<float>(tile_height_m(*tile, n))};
     }
 }
 

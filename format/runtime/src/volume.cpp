@@ -1,6 +1,7 @@
 #include <drtv/volume.h>
 
 #include "arena.h"
+#include "columns.h"
 #include "volume_state.h"
 
 #include <algorithm>

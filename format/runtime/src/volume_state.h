@@ -115,11 +115,6 @@ struct Volume::State {
     }
 };
 
-[[nodiscard]] inline std::int32_t modulo(std::int32_t n, std::int32_t length) {
-    const std::int32_t rest = n % length;
-    return rest < 0 ? rest + length : rest;
-}
-
 // Moves the window to a camera and writes what changed, or all.
 void update_volume(Volume::State& state,
                    const SectorSet& set,
