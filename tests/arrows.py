@@ -14,7 +14,8 @@ ARROWS = {
     "format": set(),
     "format/runtime": {"format"},
     "format/light": {"format", "format/runtime"},
-    "format/tool": {"format", "format/runtime", "format/light"},
+    "format/kit": {"format", "format/runtime", "format/light"},
+    "format/tool": {"format", "format/runtime", "format/light", "format/kit"},
     "placement": set(),
     "bakerd/map": set(),
     "bakerd/trace": {"bakerd/map", "placement"},
@@ -42,7 +43,7 @@ OPEN_HEADERS = {"drtv/conventions.h": {"placement", "bakerd/map"}}
 # Foreign headers -> the only rooms that may include them.
 FOREIGN = {
     r"tiny_gltf\.h": {"bakerd/map"},
-    r"stb/": {"bakerd/map", "client", "format/tool"},
+    r"stb/": {"bakerd/map", "client", "format/kit"},
     r"embree3/": {"bakerd/trace"},
     r"CGAL/": {"placement"},
     r"glm/": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/reuse"},
@@ -53,7 +54,7 @@ FOREIGN = {
     r"google/protobuf/": {"bakerd/service"},
     r"nlohmann/": {"format/light", "format/tool", "bakerd/map", "bakerd/store", "bakerd/worker", "client"},
     r"openssl/": {"bakerd/map", "client"},
-    r"CLI/": {"bakerd", "client", "format/tool"},
+    r"CLI/": {"bakerd", "client", "format/kit", "format/tool"},
     r"spdlog/": {"bakerd", "bakerd/worker", "bakerd/farm", "bakerd/service"},
     r"fmt/": {
         "bakerd",
@@ -121,6 +122,9 @@ def target_room(root, path, quote, header):
         beside = os.path.normpath(os.path.join(os.path.dirname(path), header))
         if os.path.exists(os.path.join(root, beside)):
             return room_of(beside)
+        # format/ also builds alone: its parts name each other from there.
+        if os.path.exists(os.path.join(root, "format", header)):
+            return room_of("format/" + header)
         return room_of(header) or None
     return None
 

@@ -1,7 +1,7 @@
 #include "check_files.h"
 
-#include "files.h"
-#include "progress_bar.h"
+#include "kit/files.h"
+#include "kit/progress_bar.h"
 
 #include <algorithm>
 #include <atomic>
@@ -44,7 +44,7 @@ std::optional<std::array<std::int32_t, 2>> sector_in_name(const std::string& pat
 }
 
 void check_file(CheckedFile& file, const ValidateOptions& options, bool for_regions) {
-    const FileRead read = read_file(file.path);
+    const kit::FileRead read = kit::read_file(file.path);
     file.unreadable = read.error;
     if (!read.ok())
         return;
@@ -85,7 +85,7 @@ CheckedFile file_to_check(const std::string& path) {
 void check_files(std::vector<CheckedFile>& files, const ValidateOptions& options, bool for_regions) {
     std::atomic<std::size_t> next = 0;
     std::atomic<std::size_t> done = 0;
-    ProgressBar bar("checked", files.size());
+    kit::ProgressBar bar("checked", files.size());
     const auto work = [&] {
         for (std::size_t n; (n = next++) < files.size();) {
             check_file(files[n], options, for_regions);

@@ -1,6 +1,7 @@
 #include "commands.h"
 #include "diff_report.h"
-#include "files.h"
+#include "kit/exit_code.h"
+#include "kit/files.h"
 #include "region_picture.h"
 #include "sector_diff.h"
 
@@ -42,22 +43,22 @@ Float3 change_colour(double change) {
 }
 
 std::optional<Side> files_of(const std::string& path, int& exit_code) {
-    const auto files = sector_files(path);
+    const auto files = kit::sector_files(path);
     if (!files) {
-        exit_code = exit_unreadable;
+        exit_code = kit::exit_unreadable;
         return std::nullopt;
     }
     Side side;
     for (const std::string& file : *files) {
-        const std::optional<Sector> sector = load_sector(file, exit_code);
+        const std::optional<Sector> sector = kit::load_sector(file, exit_code);
         if (!sector)
             return std::nullopt;
         const SectorPlace place = {sector->i, sector->j};
         const auto [entry, added] = side.try_emplace(place, file);
         if (added)
             continue;
-        complain(entry->second + " and " + file + " hold the same sector " + text(place));
-        exit_code = exit_invalid;
+        kit::complain(entry->second + " and " + file + " hold the same sector " + text(place));
+        exit_code = kit::exit_invalid;
         return std::nullopt;
     }
     return side;
@@ -79,9 +80,9 @@ int compare_sector(const SectorPlace& place,
                    const std::string& first_file,
                    const std::string& second_file,
                    Comparison& comparison) {
-    int exit_code = exit_valid;
-    const std::optional<Sector> first = load_sector(first_file, exit_code);
-    const std::optional<Sector> second = first ? load_sector(second_file, exit_code) : std::nullopt;
+    int exit_code = kit::exit_valid;
+    const std::optional<Sector> first = kit::load_sector(first_file, exit_code);
+    const std::optional<Sector> second = first ? kit::load_sector(second_file, exit_code) : std::nullopt;
     if (!second)
         return exit_code;
     const SectorDiff diff = diff_sectors(*first, *second);
@@ -89,24 +90,24 @@ int compare_sector(const SectorPlace& place,
     DiffTotals& totals = comparison.totals;
     ++totals.compared;
     if (diff.equal())
-        return exit_valid;
+        return kit::exit_valid;
     ++totals.different;
     for (std::size_t q = 0; q < quantity_count; ++q)
         totals.changes[q].merge(diff.changes[q], "sector " + text(place) + " ");
     comparison.report.add(place, diff, second->probes.size());
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 int add_single(const std::string& file, const Float3& colour, RegionPicture& picture) {
-    int exit_code = exit_valid;
-    const std::optional<Sector> sector = load_sector(file, exit_code);
+    int exit_code = kit::exit_valid;
+    const std::optional<Sector> sector = kit::load_sector(file, exit_code);
     if (sector)
         picture.add(*sector, [&](std::size_t, float) { return colour; });
     return exit_code;
 }
 
 int compare_sides(const Side& first, const Side& second, Comparison& comparison) {
-    int exit_code = exit_valid;
+    int exit_code = kit::exit_valid;
     for (const auto& [place, file] : second) {
         const auto before = first.find(place);
         if (before == first.end()) {
@@ -115,7 +116,7 @@ int compare_sides(const Side& first, const Side& second, Comparison& comparison)
         } else {
             exit_code = compare_sector(place, before->second, file, comparison);
         }
-        if (exit_code != exit_valid)
+        if (exit_code != kit::exit_valid)
             return exit_code;
     }
     for (const auto& [place, file] : first) {
@@ -123,23 +124,23 @@ int compare_sides(const Side& first, const Side& second, Comparison& comparison)
             continue;
         comparison.totals.only_first.push_back(place);
         exit_code = add_single(file, removed_colour, comparison.picture);
-        if (exit_code != exit_valid)
+        if (exit_code != kit::exit_valid)
             return exit_code;
     }
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 int write_picture(const RegionPicture& picture, const DiffRequest& request) {
     const auto image = draw(picture, request.metres_per_pixel);
     if (!image)
-        return exit_usage;
-    const std::string error = write_file(*request.png, encode_png(*image));
+        return kit::exit_usage;
+    const std::string error = kit::write_file(*request.png, kit::encode_png(*image));
     if (!error.empty()) {
-        complain(error);
-        return exit_unreadable;
+        kit::complain(error);
+        return kit::exit_unreadable;
     }
     if (request.json)
-        return exit_valid;
+        return kit::exit_valid;
     std::printf(
         "%s: grey is equal; green changed by %g or less of a white sky, yellow by %g, red by %g or more; "
         "blue is new, magenta gone\n",
@@ -147,13 +148,13 @@ int write_picture(const RegionPicture& picture, const DiffRequest& request) {
         min_shown_change,
         std::sqrt(min_shown_change * red_change),
         red_change);
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 }  // namespace
 
 int run_diff(const DiffRequest& request) {
-    int exit_code = exit_valid;
+    int exit_code = kit::exit_valid;
     const auto first = files_of(request.first, exit_code);
     const auto second = first ? files_of(request.second, exit_code) : std::nullopt;
     if (!second)
@@ -161,14 +162,14 @@ int run_diff(const DiffRequest& request) {
 
     Comparison comparison{{}, DiffReport(request.json), {}};
     exit_code = compare_sides(*first, *second, comparison);
-    if (exit_code != exit_valid)
+    if (exit_code != kit::exit_valid)
         return exit_code;
     comparison.report.finish(comparison.totals);
     if (request.png)
         exit_code = write_picture(comparison.picture, request);
-    if (exit_code != exit_valid)
+    if (exit_code != kit::exit_valid)
         return exit_code;
-    return comparison.totals.equal() ? exit_valid : exit_different;
+    return comparison.totals.equal() ? kit::exit_valid : kit::exit_different;
 }
 
 }  // namespace drtv::tool

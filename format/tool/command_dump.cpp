@@ -1,6 +1,7 @@
 #include "commands.h"
-#include "files.h"
-#include "json_writer.h"
+#include "kit/exit_code.h"
+#include "kit/files.h"
+#include "kit/json_writer.h"
 
 #include <array>
 #include <cstdio>
@@ -23,19 +24,19 @@ std::string hex(const std::array<std::uint8_t, 32>& bytes) {
     return text;
 }
 
-void append_codes(JsonWriter& json, std::int16_t code, float scale) {
+void append_codes(kit::JsonWriter& json, std::int16_t code, float scale) {
     json.value(decode_fixed(code, scale));
 }
 
 template <class Element, std::size_t count>
-void append_codes(JsonWriter& json, const std::array<Element, count>& codes, float scale) {
+void append_codes(kit::JsonWriter& json, const std::array<Element, count>& codes, float scale) {
     json.begin_array();
     for (const Element& element : codes)
         append_codes(json, element, scale);
     json.end_array();
 }
 
-void append_local(JsonWriter& json, const Sector& sector, const LocalReceiver& receiver) {
+void append_local(kit::JsonWriter& json, const Sector& sector, const LocalReceiver& receiver) {
     const LocalTransfer& local = *sector.local_transfer;
     json.key("local").begin_array();
     std::size_t pair = receiver.first_pair;
@@ -56,7 +57,7 @@ void append_local(JsonWriter& json, const Sector& sector, const LocalReceiver& r
     json.end_array();
 }
 
-void append_quality(JsonWriter& json, const Quality& quality, std::size_t p) {
+void append_quality(kit::JsonWriter& json, const Quality& quality, std::size_t p) {
     const ProbeQuality& probe = quality.probes[p];
     json.key("quality").begin_object();
     json.member("transfer_error", probe.transfer_error);
@@ -74,7 +75,7 @@ void append_quality(JsonWriter& json, const Quality& quality, std::size_t p) {
     json.end_object();
 }
 
-void append_probe(JsonWriter& json, const Sector& sector, std::size_t p) {
+void append_probe(kit::JsonWriter& json, const Sector& sector, std::size_t p) {
     const Probe& probe = sector.probes[p];
     json.begin_object();
     json.key("position").begin_array();
@@ -104,14 +105,14 @@ void append_probe(JsonWriter& json, const Sector& sector, std::size_t p) {
     json.end_object();
 }
 
-void append_settings(JsonWriter& json, const BakeRecord& bake) {
+void append_settings(kit::JsonWriter& json, const BakeRecord& bake) {
     json.key("settings").begin_object();
     json.key("rays").value(bake.rays).key("bounces").value(bake.bounces);
     json.key("reach").value(bake.reach_m).key("min_distance").value(bake.min_distance_m);
     json.key("key").value(hex(bake.settings_key)).end_object();
 }
 
-void append_grid(JsonWriter& json, const Sector& sector) {
+void append_grid(kit::JsonWriter& json, const Sector& sector) {
     const std::array<double, 3> origin = {double{sector_size_m} * sector.i,
                                           double{sector_size_m} * sector.j,
                                           metres(sector.grid.z_origin_units)};
@@ -125,7 +126,7 @@ void append_grid(JsonWriter& json, const Sector& sector) {
     json.end_array().end_object();
 }
 
-void append_statistics(JsonWriter& json, const Statistics& s) {
+void append_statistics(kit::JsonWriter& json, const Statistics& s) {
     json.key("statistics").begin_object();
     json.key("candidates").value(s.candidates).key("moved_out").value(s.moved_out);
     json.key("dropped_in_solid")
@@ -136,7 +137,7 @@ void append_statistics(JsonWriter& json, const Statistics& s) {
     json.key("rays").value(s.rays).key("back_hits").value(s.back_hits).end_object();
 }
 
-void append_convergence(JsonWriter& json, const Convergence& c) {
+void append_convergence(kit::JsonWriter& json, const Convergence& c) {
     json.key("convergence").begin_object();
     json.key("error_asked").value(c.error_asked).key("error_median").value(c.error_median);
     json.key("error_p95").value(c.error_p95).key("error_max").value(c.error_max);
@@ -149,7 +150,7 @@ void append_convergence(JsonWriter& json, const Convergence& c) {
         .end_object();
 }
 
-void append_interiors(JsonWriter& json, const Sector& sector) {
+void append_interiors(kit::JsonWriter& json, const Sector& sector) {
     json.key("interiors").begin_array();
     for (const Interior& interior : sector.interiors) {
         json.begin_object().key("probe").value(unsigned{interior.probe}).key("vertices").begin_array();
@@ -175,14 +176,14 @@ void append_interiors(JsonWriter& json, const Sector& sector) {
 }  // namespace
 
 int run_dump(const std::string& file) {
-    int exit_code = exit_valid;
+    int exit_code = kit::exit_valid;
     std::vector<std::uint8_t> bytes;
-    const std::optional<Sector> loaded = load_sector(file, exit_code, &bytes);
+    const std::optional<Sector> loaded = kit::load_sector(file, exit_code, &bytes);
     if (!loaded)
         return exit_code;
     const Sector& sector = *loaded;
-    JsonWriter json;
-    json.begin_object().key("format_version").value(format_version(bytes));
+    kit::JsonWriter json;
+    json.begin_object().key("format_version").value(kit::format_version(bytes));
     json.key("sector").begin_array().value(sector.i).value(sector.j).end_array();
     append_settings(json, sector.bake);
     if (!sector.light_groups.empty()) {
@@ -209,7 +210,7 @@ int run_dump(const std::string& file) {
     }
     json.end_object();
     std::puts(json.text().c_str());
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 }  // namespace drtv::tool

@@ -1,5 +1,6 @@
 #include "commands.h"
-#include "files.h"
+#include "kit/exit_code.h"
+#include "kit/files.h"
 #include "quality_parts.h"
 
 #include <drtv/read.h>
@@ -152,15 +153,15 @@ void print_light(const Sector& sector) {
 }  // namespace
 
 int run_info(const std::string& file) {
-    int exit_code = exit_valid;
+    int exit_code = kit::exit_valid;
     std::vector<std::uint8_t> bytes;
-    const std::optional<Sector> loaded = load_sector(file, exit_code, &bytes);
+    const std::optional<Sector> loaded = kit::load_sector(file, exit_code, &bytes);
     if (!loaded)
         return exit_code;
     const Sector& sector = *loaded;
     std::vector<SectionEntry> entries;
     if (const ReadStatus status = read_section_table(bytes, entries); !status.ok())
-        return exit_invalid;
+        return kit::exit_invalid;
 
     const int x = sector.i * sector_size_m, y = sector.j * sector_size_m;
     std::printf("sector          (%d, %d): x %d to %d m, y %d to %d m\n",
@@ -170,7 +171,7 @@ int run_info(const std::string& file) {
                 x + sector_size_m,
                 y,
                 y + sector_size_m);
-    std::printf("file            %zu bytes, format %s\n", bytes.size(), format_version(bytes).c_str());
+    std::printf("file            %zu bytes, format %s\n", bytes.size(), kit::format_version(bytes).c_str());
     print_probes(sector);
     const BakeRecord& bake = sector.bake;
     std::printf("settings        rays %u, bounces %u, reach %g m, min_distance %g m\n",
@@ -196,7 +197,7 @@ int run_info(const std::string& file) {
                 static_cast<unsigned long long>(s.back_hits));
     print_light(sector);
     print_sections(entries);
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 }  // namespace drtv::tool

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "kit/exit_code.h"
 
 #include <drtv/issues.h>
 
@@ -63,7 +64,7 @@ int run_issues() {
         }
     }
     std::fputs(retired, stdout);
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 }  // namespace drtv::tool

@@ -1,6 +1,7 @@
 #include "commands.h"
 #include "dot_colour.h"
-#include "files.h"
+#include "kit/exit_code.h"
+#include "kit/files.h"
 #include "region_picture.h"
 
 #include <algorithm>
@@ -34,14 +35,14 @@ int run_preview(const PreviewRequest& request) {
     const auto* quantity =
         std::ranges::find(quantities, request.quantity, &std::pair<std::string_view, DotQuantity>::first);
     if (quantity == quantities.end())
-        return exit_usage;
-    const auto files = sector_files(request.path);
+        return kit::exit_usage;
+    const auto files = kit::sector_files(request.path);
     if (!files)
-        return exit_unreadable;
+        return kit::exit_unreadable;
     RegionPicture picture;
     for (const std::string& file : *files) {
-        int exit_code = exit_valid;
-        const std::optional<Sector> sector = load_sector(file, exit_code);
+        int exit_code = kit::exit_valid;
+        const std::optional<Sector> sector = kit::load_sector(file, exit_code);
         if (!sector)
             return exit_code;
         picture.add(*sector, [&](std::size_t p, float sky_visibility) {
@@ -50,11 +51,11 @@ int run_preview(const PreviewRequest& request) {
     }
     const auto image = draw(picture, request.metres_per_pixel);
     if (!image)
-        return exit_usage;
-    const std::string error = write_file(request.out, encode_png(*image));
+        return kit::exit_usage;
+    const std::string error = kit::write_file(request.out, kit::encode_png(*image));
     if (!error.empty()) {
-        complain(error);
-        return exit_unreadable;
+        kit::complain(error);
+        return kit::exit_unreadable;
     }
     std::printf("%s: %zu x %zu pixels, %zu sector%s, %zu probes\n",
                 request.out.c_str(),
@@ -63,7 +64,7 @@ int run_preview(const PreviewRequest& request) {
                 files->size(),
                 files->size() == 1 ? "" : "s",
                 picture.dots.size());
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 }  // namespace drtv::tool

@@ -1,11 +1,12 @@
 #include "command_relight.h"
 
 #include "commands.h"
-#include "json_writer.h"
-#include "number_list.h"
+#include "kit/exit_code.h"
+#include "kit/json_writer.h"
+#include "kit/number_list.h"
+#include "kit/relit_volume.h"
+#include "kit/sector_folder.h"
 #include "relight_points.h"
-#include "relit_volume.h"
-#include "sector_folder.h"
 
 #include <drtv/ambient.h>
 
@@ -34,7 +35,10 @@ const char* name_of(PlaceStatus status) {
     return "no_probe";
 }
 
-void append_reference(JsonWriter& json, const char* key, const LoadedSector* sector, std::uint32_t index) {
+void append_reference(kit::JsonWriter& json,
+                      const char* key,
+                      const LoadedSector* sector,
+                      std::uint32_t index) {
     json.key(key);
     if (sector == nullptr) {
         json.null();
@@ -46,7 +50,7 @@ void append_reference(JsonWriter& json, const char* key, const LoadedSector* sec
 }
 
 void print_json(const RelightPoint& point, const Ambient& ambient) {
-    JsonWriter json;
+    kit::JsonWriter json;
     json.begin_object().key("at").array(point.at).key("normal").array(point.normal);
     json.member("status", name_of(ambient.status));
     append_reference(json, "probe", ambient.probe.sector, ambient.probe.probe);
@@ -114,16 +118,16 @@ void print_head() {
 int read_places(const RelightRequest& request, std::vector<RelightPoint>& points) {
     if (request.points)
         return read_points(*request.points, points);
-    return read_point(request.at, request.normal, points) ? exit_valid : exit_usage;
+    return read_point(request.at, request.normal, points) ? kit::exit_valid : kit::exit_usage;
 }
 
 // False, and a complaint, where the option is given and is no place.
 bool read_camera(const RelightRequest& request, std::optional<Double3>& camera) {
     if (!request.camera)
         return true;
-    const auto numbers = number_list(*request.camera, 3);
+    const auto numbers = kit::number_list(*request.camera, 3);
     if (!numbers) {
-        complain("relight: --camera takes x,y,z, not \"" + *request.camera + "\"");
+        kit::complain("relight: --camera takes x,y,z, not \"" + *request.camera + "\"");
         return false;
     }
     camera = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
@@ -140,16 +144,16 @@ bool any_sector(const SectorSet& set, const Has& has) {
 }
 
 // Light that no loaded sector takes is hardly meant; others may, so it is no error.
-void warn_of_lost_light(const SectorSet& set, const RequestedLight& requested) {
+void warn_of_lost_light(const SectorSet& set, const kit::RequestedLight& requested) {
     const std::string none = "warning: none of the sectors around the places has ";
     for (const std::string& name : requested.names) {
         if (!any_sector(set,
                         [&](const SectorView& view) { return find_light_group(view, name).has_value(); }))
-            complain(none + "a light group \"" + name + "\"");
+            kit::complain(none + "a light group \"" + name + "\"");
     }
     const auto takes_lamps = [](const SectorView& view) { return !view.local_receivers.empty(); };
     if (!requested.lamps.empty() && !any_sector(set, takes_lamps))
-        complain(none + "local transfer: lamps bring nothing");
+        kit::complain(none + "local transfer: lamps bring nothing");
 }
 
 VolumeSettings volume_settings(const RelightRequest& request) {
@@ -165,24 +169,25 @@ VolumeSettings volume_settings(const RelightRequest& request) {
 }  // namespace
 
 int run_relight(const RelightRequest& request) {
-    RequestedLight requested;
-    if (const int exit_code = read_light(request.light, requested); exit_code != exit_valid)
+    kit::RequestedLight requested;
+    if (const int exit_code = kit::read_light(request.light, "relight", requested);
+        exit_code != kit::exit_valid)
         return exit_code;
     std::vector<RelightPoint> points;
-    if (const int exit_code = read_places(request, points); exit_code != exit_valid)
+    if (const int exit_code = read_places(request, points); exit_code != kit::exit_valid)
         return exit_code;
 
     std::optional<Double3> camera;
     if (!read_camera(request, camera))
-        return exit_usage;
+        return kit::exit_usage;
 
     std::vector<Double3> places;
     for (const RelightPoint& point : points)
         places.push_back(point.at);
     for (const PointLight& lamp : requested.lamps)
         places.push_back(lamp.position);
-    SectorFolder folder;
-    if (const int exit_code = folder.load(request.folder, places); exit_code != exit_valid)
+    kit::SectorFolder folder;
+    if (const int exit_code = folder.load(request.folder, places); exit_code != kit::exit_valid)
         return exit_code;
 
     const SectorSet& set = folder.set();
@@ -193,7 +198,7 @@ int run_relight(const RelightRequest& request) {
         const std::size_t count = split_light(set, lamp, shares);
         lamps.insert(lamps.end(), shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(count));
     }
-    std::optional<RelitVolume> volume;
+    std::optional<kit::RelitVolume> volume;
     if (request.by == "volume")
         volume.emplace(set, requested.light, lamps, volume_settings(request));
     if (!request.json)
@@ -213,7 +218,7 @@ int run_relight(const RelightRequest& request) {
         else
             print_row(point, ambient);
     }
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 }  // namespace drtv::tool

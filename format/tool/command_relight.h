@@ -1,7 +1,7 @@
 // drtv relight: the light at places, as a game would see it.
 #pragma once
 
-#include "scene_light.h"
+#include "kit/light_request.h"
 
 #include <optional>
 #include <string>
@@ -19,7 +19,7 @@ struct RelightRequest {
     std::optional<double> offset_m;     // else 0, and surface_offset_m by volume
     bool interiors = true;
     bool json = false;
-    LightRequest light;
+    kit::LightRequest light;
 };
 int run_relight(const RelightRequest& request);
 

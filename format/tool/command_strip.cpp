@@ -1,5 +1,6 @@
 #include "commands.h"
-#include "files.h"
+#include "kit/exit_code.h"
+#include "kit/files.h"
 
 #include <drtv/write.h>
 
@@ -55,7 +56,7 @@ bool is_within(const std::string& in, const std::string& out) {
 // Sector files below the folder `out` that are not among the files just written.
 std::size_t left_behind(const std::string& out, const std::set<fs::path>& written) {
     std::size_t others = 0;
-    if (const auto files = sector_files(out)) {
+    if (const auto files = kit::sector_files(out)) {
         for (const std::string& file : *files)
             others += written.contains(fs::path(file).lexically_normal()) ? 0u : 1u;
     }
@@ -70,12 +71,13 @@ std::vector<std::string> optional_section_names() {
 
 int run_strip(const StripRequest& request) {
     const WriteOptions write{request.compress ? Codec::zstd : Codec::raw};
-    const auto files = sector_files(request.in);
+    const auto files = kit::sector_files(request.in);
     if (!files)
-        return exit_unreadable;
+        return kit::exit_unreadable;
     if (is_within(request.in, request.out)) {
-        complain("strip: " + request.out + " is, or lies in, " + request.in + ": write to another place");
-        return exit_usage;
+        kit::complain("strip: " + request.out + " is, or lies in, " + request.in +
+                      ": write to another place");
+        return kit::exit_usage;
     }
     std::set<fs::path> inputs;
     std::error_code code;
@@ -85,19 +87,19 @@ int run_strip(const StripRequest& request) {
     for (const std::string& file : *files) {
         const std::string target = target_of(file, request);
         if (inputs.contains(fs::weakly_canonical(target, code))) {
-            complain("strip: " + target + " is a file that is stripped: write to another place");
-            return exit_usage;
+            kit::complain("strip: " + target + " is a file that is stripped: write to another place");
+            return kit::exit_usage;
         }
-        int exit_code = exit_valid;
-        if (!load_sector(file, exit_code))
+        int exit_code = kit::exit_valid;
+        if (!kit::load_sector(file, exit_code))
             return exit_code;
     }
     std::size_t before = 0, after = 0;
     std::set<fs::path> written;
     for (const std::string& file : *files) {
         std::vector<std::uint8_t> bytes;
-        int exit_code = exit_valid;
-        std::optional<Sector> sector = load_sector(file, exit_code, &bytes);
+        int exit_code = kit::exit_valid;
+        std::optional<Sector> sector = kit::load_sector(file, exit_code, &bytes);
         if (!sector)
             return exit_code;
         strip(*sector, request.keep);
@@ -106,10 +108,10 @@ int run_strip(const StripRequest& request) {
         std::error_code ignored;
         if (const fs::path folder = fs::path(target).parent_path(); !folder.empty())
             fs::create_directories(folder, ignored);
-        const std::string error = write_file(target, stripped);
+        const std::string error = kit::write_file(target, stripped);
         if (!error.empty()) {
-            complain(error);
-            return exit_unreadable;
+            kit::complain(error);
+            return kit::exit_unreadable;
         }
         written.insert(fs::path(target).lexically_normal());
         before += bytes.size();
@@ -130,7 +132,7 @@ int run_strip(const StripRequest& request) {
                         others == 1 ? "it was" : "they were");
         }
     }
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 }  // namespace drtv::tool

@@ -1,6 +1,7 @@
 #include "check_files.h"
 #include "commands.h"
-#include "files.h"
+#include "kit/exit_code.h"
+#include "kit/files.h"
 #include "validate_report.h"
 
 #include <drtv/issues.h>
@@ -21,11 +22,11 @@ namespace fs = std::filesystem;
 bool ignore(const std::string& code, std::vector<const Issue*>& ignored) {
     const Issue* issue = issue_of_code(code);
     if (issue == nullptr) {
-        complain("validate: there is no issue \"" + code + "\"; drtv issues lists them");
+        kit::complain("validate: there is no issue \"" + code + "\"; drtv issues lists them");
         return false;
     }
     if (issue->group == IssueGroup::structure && issue->severity == Severity::error) {
-        complain("validate: " + code + " cannot be ignored: nobody can read such a file");
+        kit::complain("validate: " + code + " cannot be ignored: nobody can read such a file");
         return false;
     }
     ignored.push_back(issue);
@@ -37,7 +38,7 @@ bool find_files(const std::vector<std::string>& paths, std::vector<CheckedFile>&
     bool complete = true;
     std::set<fs::path> known;
     for (const std::string& path : paths) {
-        const auto found = sector_files(path);
+        const auto found = kit::sector_files(path);
         if (!found) {
             complete = false;
             continue;
@@ -58,26 +59,26 @@ int run_validate(const ValidateRequest& request) {
     std::vector<const Issue*> ignored;
     for (const std::string& code : request.ignored) {
         if (!ignore(code, ignored))
-            return exit_usage;
+            return kit::exit_usage;
     }
     const ValidateOptions options{request.quick, request.max_findings, ignored};
 
     std::vector<CheckedFile> files;
-    int exit_code = find_files(request.paths, files) ? exit_valid : exit_unreadable;
+    int exit_code = find_files(request.paths, files) ? kit::exit_valid : kit::exit_unreadable;
     check_files(files, options, request.neighbours);
     const std::size_t folders = request.neighbours ? check_regions(files, options) : 0;
 
     ValidateReport report(request.json);
     for (const CheckedFile& file : files) {
         if (!file.unreadable.empty()) {
-            complain(file.unreadable);
-            exit_code = std::max<int>(exit_code, exit_unreadable);
+            kit::complain(file.unreadable);
+            exit_code = std::max<int>(exit_code, kit::exit_unreadable);
             continue;
         }
         const bool alarming = request.warnings_as_errors && file.report.warnings > 0;
         const bool valid = file.report.valid() && !alarming;
         if (!valid)
-            exit_code = exit_invalid;
+            exit_code = kit::exit_invalid;
         report.add(file, valid);
     }
     report.finish(folders);

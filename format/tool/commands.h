@@ -8,14 +8,6 @@
 
 namespace drtv::tool {
 
-enum ExitCode : int {
-    exit_valid = 0,
-    exit_usage = 1,
-    exit_unreadable = 2,
-    exit_invalid = 3,
-    exit_different = 4
-};
-
 struct ValidateRequest {
     std::vector<std::string> paths;
     std::vector<std::string> ignored;  // codes
@@ -66,8 +58,5 @@ struct TilesRequest {
 int run_tiles(const TilesRequest& request);
 
 int run_issues();
-
-// One sentence to stderr, "drtv: " before it.
-void complain(const std::string& sentence);
 
 }  // namespace drtv::tool

@@ -74,7 +74,7 @@ void print_totals(const DiffTotals& totals) {
     print_changes(totals.changes);
 }
 
-void append_changes(JsonWriter& json, const Changes& changes) {
+void append_changes(kit::JsonWriter& json, const Changes& changes) {
     json.key("changes").begin_object();
     for (std::size_t q = 0; q < quantity_count; ++q) {
         const Change& change = changes[q];
@@ -87,7 +87,10 @@ void append_changes(JsonWriter& json, const Changes& changes) {
     json.end_object();
 }
 
-void append_sector(JsonWriter& json, const SectorPlace& place, const SectorDiff& diff, std::size_t probes) {
+void append_sector(kit::JsonWriter& json,
+                   const SectorPlace& place,
+                   const SectorDiff& diff,
+                   std::size_t probes) {
     json.begin_object();
     json.key("sector").array(place);
     json.count("probes", probes);
@@ -109,7 +112,7 @@ void append_sector(JsonWriter& json, const SectorPlace& place, const SectorDiff&
     json.end_object();
 }
 
-void append_places(JsonWriter& json, const char* key, const std::vector<SectorPlace>& places) {
+void append_places(kit::JsonWriter& json, const char* key, const std::vector<SectorPlace>& places) {
     json.key(key).begin_array();
     for (const SectorPlace& place : places)
         json.array(place);

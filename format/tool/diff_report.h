@@ -1,7 +1,7 @@
 // How `drtv diff` tells what changed: in sentences, or as one JSON object.
 #pragma once
 
-#include "json_writer.h"
+#include "kit/json_writer.h"
 #include "sector_diff.h"
 
 #include <array>
@@ -40,7 +40,7 @@ class DiffReport {
 
   private:
     const bool as_json_;
-    JsonWriter json_;
+    kit::JsonWriter json_;
 };
 
 }  // namespace drtv::tool

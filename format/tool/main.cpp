@@ -1,7 +1,8 @@
 // drtv: validates, shows, compares, strips, pictures and relights sector files. Here the command line is
 // taken apart.
 #include "commands.h"
-#include "option_checks.h"
+#include "kit/exit_code.h"
+#include "kit/option_checks.h"
 #include "relight_options.h"
 
 #include <drtv/version.h>
@@ -15,10 +16,6 @@
 #include <vector>
 
 namespace drtv::tool {
-
-void complain(const std::string& sentence) {
-    std::fprintf(stderr, "drtv: %s\n", sentence.c_str());
-}
 
 namespace {
 
@@ -56,7 +53,7 @@ void add_checks(CLI::App& app, CommandLine& line) {
         ->allow_extra_args(false)
         ->type_name("CODE");
     validate->add_option("--max-findings", request.max_findings, "Findings shown per file")
-        ->check(whole_number(1, 1'000'000))
+        ->check(kit::whole_number(1, 1'000'000))
         ->capture_default_str();
     validate->callback([&line] { line.run = [&line] { return run_validate(line.validate); }; });
 
@@ -78,11 +75,12 @@ void add_views(CLI::App& app, CommandLine& line) {
     preview->add_option("PATH", line.preview.path, "A folder, or one file")->required();
     preview->add_option("--out", line.preview.out, "The picture")->required()->type_name("FILE.png");
     preview->add_option("--metres-per-pixel", line.preview.metres_per_pixel, "By default as fits the region")
-        ->check(number_below(1000));
+        ->check(kit::number_below(1000));
     preview
-        ->add_option(
-            "--quantity", line.preview.quantity, "What colours the probes: " + joined(preview_quantities()))
-        ->check(one_of(preview_quantities()))
+        ->add_option("--quantity",
+                     line.preview.quantity,
+                     "What colours the probes: " + kit::joined(preview_quantities()))
+        ->check(kit::one_of(preview_quantities()))
         ->capture_default_str();
     preview->callback([&line] { line.run = [&line] { return run_preview(line.preview); }; });
 }
@@ -97,8 +95,8 @@ std::vector<std::string> kept_sections(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         if (std::ranges::find(known, name) == known.end())
             throw CLI::ValidationError("--keep",
-                                       "\"" + name + "\" is no optional section: there are " + joined(known) +
-                                           "; all and none stand alone");
+                                       "\"" + name + "\" is no optional section: there are " +
+                                           kit::joined(known) + "; all and none stand alone");
     }
     return names;
 }
@@ -114,7 +112,7 @@ void add_strip(CLI::App& app, CommandLine& line) {
         ->add_option_function<std::vector<std::string>>(
             "--keep",
             [&line](const std::vector<std::string>& names) { line.strip.keep = kept_sections(names); },
-            "Optional sections to keep: " + joined(optional_section_names()) +
+            "Optional sections to keep: " + kit::joined(optional_section_names()) +
                 "; all, or none; the default is all but quality")
         ->delimiter(',')
         ->allow_extra_args(false)
@@ -124,7 +122,7 @@ void add_strip(CLI::App& app, CommandLine& line) {
             "--codec",
             [&line](const std::string& codec) { line.strip.compress = codec == "zstd"; },
             "How sections are stored: raw, zstd; the default is raw")
-        ->check(one_of({"raw", "zstd"}));
+        ->check(kit::one_of({"raw", "zstd"}));
     strip->callback([&line] { line.run = [&line] { return run_strip(line.strip); }; });
 }
 
@@ -144,7 +142,7 @@ void add_diff(CLI::App& app, CommandLine& line) {
     CLI::Option* png =
         diff->add_option("--png", line.diff.png, "Draw what changed, from above")->type_name("FILE.png");
     diff->add_option("--metres-per-pixel", line.diff.metres_per_pixel, "Of the picture")
-        ->check(number_below(1000))
+        ->check(kit::number_below(1000))
         ->needs(png);
     diff->callback([&line] { line.run = [&line] { return run_diff(line.diff); }; });
 }
@@ -155,13 +153,13 @@ int end_parse(const CLI::App& app, const CLI::ParseError& error) {
         return app.exit(error);  // --help, --version
     const auto commands = app.get_subcommands();
     if (commands.empty() && !app.remaining().empty()) {
-        complain("there is no command \"" + app.remaining().front() + "\"; drtv --help lists them");
-        return exit_usage;
+        kit::complain("there is no command \"" + app.remaining().front() + "\"; drtv --help lists them");
+        return kit::exit_usage;
     }
     const std::string command = commands.empty() ? "drtv" : "drtv " + commands.front()->get_name();
     const std::string prefix = commands.empty() ? "" : commands.front()->get_name() + ": ";
-    complain(prefix + error.what() + "; " + command + " --help says more");
-    return exit_usage;
+    kit::complain(prefix + error.what() + "; " + command + " --help says more");
+    return kit::exit_usage;
 }
 
 int run(int argc, char** argv) {
@@ -197,6 +195,6 @@ int main(int argc, char** argv) {
     // A full disk behind a redirected stdout must not look like success.
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return exit_code;
-    drtv::tool::complain("cannot write to standard output");
-    return drtv::tool::exit_unreadable;
+    drtv::kit::complain("cannot write to standard output");
+    return drtv::kit::exit_unreadable;
 }

@@ -2,6 +2,7 @@
 
 #include "commands.h"
 #include "ground_map.h"
+#include "kit/exit_code.h"
 #include "map_extent.h"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ Pixel encode_pixel(const Float3& linear) {
     return {encode_srgb(linear[0]), encode_srgb(linear[1]), encode_srgb(linear[2])};
 }
 
-void put_pixel(Image& image, std::size_t x, std::size_t y, const Pixel& pixel) {
+void put_pixel(kit::Image& image, std::size_t x, std::size_t y, const Pixel& pixel) {
     std::ranges::copy(pixel, image.at(x, y));
 }
 
@@ -42,7 +43,7 @@ Float3 ground_colour(const GroundMap& ground, std::size_t x, std::size_t y) {
     return {grey, grey, grey * 1.05f};
 }
 
-void draw_background(Image& image, const GroundMap& ground) {
+void draw_background(kit::Image& image, const GroundMap& ground) {
     const Pixel empty = encode_pixel(empty_colour);
     for (std::size_t y = 0; y < image.height; ++y) {
         for (std::size_t x = 0; x < image.width; ++x) {
@@ -53,27 +54,27 @@ void draw_background(Image& image, const GroundMap& ground) {
     }
 }
 
-void darken_pixel(Image& image, std::size_t x, std::size_t y) {
+void darken_pixel(kit::Image& image, std::size_t x, std::size_t y) {
     std::uint8_t* pixel = image.at(x, y);
     for (std::size_t c = 0; c < 3; ++c)
         pixel[c] = static_cast<std::uint8_t>(pixel[c] * 3 / 4);
 }
 
-void darken_column(Image& image, std::size_t x) {
+void darken_column(kit::Image& image, std::size_t x) {
     if (x >= image.width)
         return;
     for (std::size_t y = 0; y < image.height; ++y)
         darken_pixel(image, x, y);
 }
 
-void darken_row(Image& image, std::size_t y) {
+void darken_row(kit::Image& image, std::size_t y) {
     if (y >= image.height)
         return;
     for (std::size_t x = 0; x < image.width; ++x)
         darken_pixel(image, x, y);
 }
 
-void draw_sector_lines(Image& image, const MapExtent& extent) {
+void draw_sector_lines(kit::Image& image, const MapExtent& extent) {
     const auto pixel_of = [&](std::size_t sectors) {
         const double metres = static_cast<double>(sectors) * sector_size_m;
         return static_cast<std::size_t>(metres / extent.metres_per_pixel);
@@ -98,7 +99,7 @@ PixelRange pixels_around(double centre, double radius, std::size_t size) {
     return {first, std::min(last + 1, size)};
 }
 
-void draw_dot(Image& image, const MapExtent& extent, const Dot& dot) {
+void draw_dot(kit::Image& image, const MapExtent& extent, const Dot& dot) {
     constexpr Pixel white = {255, 255, 255};
     const Pixel colour = encode_pixel(dot.colour);
     const double radius_px = std::max(1.3, dot_radius_m / extent.metres_per_pixel);
@@ -121,7 +122,7 @@ void draw_dot(Image& image, const MapExtent& extent, const Dot& dot) {
 }
 
 // Higher probes over lower ones, as seen from above.
-void draw_dots(Image& image, const MapExtent& extent, std::vector<Dot> dots) {
+void draw_dots(kit::Image& image, const MapExtent& extent, std::vector<Dot> dots) {
     std::ranges::stable_sort(dots, {}, &Dot::z_m);
     for (const Dot& dot : dots)
         draw_dot(image, extent, dot);
@@ -142,15 +143,16 @@ void RegionPicture::add(const Sector& sector, const DotColour& colour) {
     }
 }
 
-std::optional<Image> draw(const RegionPicture& picture, double metres_per_pixel) {
+std::optional<kit::Image> draw(const RegionPicture& picture, double metres_per_pixel) {
     const MapExtent extent = measure(picture.sectors, metres_per_pixel);
     const std::size_t covered = extent.sectors_wide() * extent.sectors_high();
     if (covered > max_covered_sectors) {
-        complain("the sectors lie too far apart for one picture: the rectangle around them has " +
-                 std::to_string(covered) + " sectors, the limit is " + std::to_string(max_covered_sectors));
+        kit::complain("the sectors lie too far apart for one picture: the rectangle around them has " +
+                      std::to_string(covered) + " sectors, the limit is " +
+                      std::to_string(max_covered_sectors));
         return std::nullopt;
     }
-    Image image(extent.width, extent.height);
+    kit::Image image(extent.width, extent.height);
     draw_background(image, GroundMap(extent, picture.dots));
     draw_sector_lines(image, extent);
     draw_dots(image, extent, picture.dots);

@@ -1,7 +1,7 @@
 // A region of sectors from above: probes as dots over a shaded map of sky visibility.
 #pragma once
 
-#include "png_writer.h"
+#include "kit/png.h"
 
 #include <drtv/sector.h>
 
@@ -34,6 +34,6 @@ struct RegionPicture {
 
 // At 0 metres a pixel the longer side has about 1,600 pixels. Nothing, and a complaint, where the sectors lie
 // too far apart for one picture. REQUIRES: at least one sector.
-[[nodiscard]] std::optional<Image> draw(const RegionPicture& picture, double metres_per_pixel);
+[[nodiscard]] std::optional<kit::Image> draw(const RegionPicture& picture, double metres_per_pixel);
 
 }  // namespace drtv::tool

@@ -1,43 +1,9 @@
 #include "relight_options.h"
 
-#include "option_checks.h"
+#include "kit/light_options.h"
+#include "kit/option_checks.h"
 
 namespace drtv::tool {
-
-void add_light(CLI::App& command, LightRequest& light) {
-    CLI::Option* time =
-        command.add_option("--time", light.time, "Sun, sky and light groups at this time of a day")
-            ->type_name("HH:MM");
-    command
-        .add_option("--gradients", light.gradients, "The day (light.schema.json) instead of the built-in one")
-        ->needs(time)
-        ->type_name("FILE.json");
-    CLI::Option* direction =
-        command.add_option("--sun-direction", light.sun_direction, "Towards the sun, any length")
-            ->excludes(time)
-            ->type_name("x,y,z");
-    command.add_option("--sun", light.sun, "Irradiance from the sun on a surface that faces it")
-        ->excludes(time)
-        ->needs(direction)
-        ->type_name("r,g,b");
-    CLI::Option* sky =
-        command.add_option("--sky", light.sky, "A sky of one radiance")->excludes(time)->type_name("r,g,b");
-    command
-        .add_option("--sky-colours", light.sky_colours, "Radiance at zenith, horizon and on the sun's side")
-        ->excludes(time)
-        ->excludes(sky)
-        ->type_name("NINE,NUMBERS");
-    command
-        .add_option("--light", light.lights, "A lamp: its place, and its flux / (4 pi); any number of times")
-        ->allow_extra_args(false)
-        ->type_name("x,y,z,r,g,b");
-    command.add_option("--group", light.groups, "Factor of a light group; any number of times")
-        ->allow_extra_args(false)
-        ->type_name("NAME=r,g,b");
-    command.add_option("--mode", light.mode, "accurate, or literal: the talk's code")
-        ->check(one_of({"literal", "accurate"}))
-        ->capture_default_str();
-}
 
 void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& run) {
     CLI::App* relight = app.add_subcommand("relight", "The ambient light at places, as a game gets it");
@@ -54,7 +20,7 @@ void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& r
     at->needs(normal)->excludes(points);
     normal->needs(at);
     relight->add_option("--by", request.by, "Which probes: nearest, trilinear, volume")
-        ->check(one_of({"nearest", "trilinear", "volume"}))
+        ->check(kit::one_of({"nearest", "trilinear", "volume"}))
         ->capture_default_str();
     CLI::Option* camera =
         relight
@@ -63,20 +29,20 @@ void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& r
     CLI::Option* encoding =
         relight
             ->add_option("--encoding", request.encoding, "Of the volume's texels: rgba8, rgba8-sqrt, rgba16f")
-            ->check(one_of({"rgba8", "rgba8-sqrt", "rgba16f"}))
+            ->check(kit::one_of({"rgba8", "rgba8-sqrt", "rgba16f"}))
             ->capture_default_str();
     relight
         ->add_option(
             "--offset",
             request.offset_m,
             "Metres along the normal at which probes and interiors are asked (0; with --by volume 1)")
-        ->check(finite_number());
+        ->check(kit::finite_number());
     relight->add_flag_callback(
         "--no-interiors",
         [&request] { request.interiors = false; },
         "Places inside are lit as outside; lamps still know interiors");
     relight->add_flag("--json", request.json, "Print JSON, one object per place");
-    add_light(*relight, request.light);
+    kit::add_light(*relight, request.light);
     relight->callback([&request, &run, at, points, camera, encoding] {
         for (const CLI::Option* option : {camera, encoding}) {
             if (option->count() > 0 && request.by != "volume")

@@ -1,4 +1,4 @@
-// The command line of what relights.
+// The command line of `drtv relight`.
 #pragma once
 
 #include "command_relight.h"
@@ -8,9 +8,6 @@
 #include <functional>
 
 namespace drtv::tool {
-
-// The light of a moment: by the time of day, or by numbers. The same for every command that relights.
-void add_light(CLI::App& command, LightRequest& light);
 
 // Sets `run` when the command is on the line.
 void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& run);

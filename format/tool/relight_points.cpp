@@ -1,8 +1,9 @@
 #include "relight_points.h"
 
 #include "commands.h"
-#include "files.h"
-#include "number_list.h"
+#include "kit/exit_code.h"
+#include "kit/files.h"
+#include "kit/number_list.h"
 
 #include <nlohmann/json.hpp>
 
@@ -21,7 +22,7 @@ std::optional<Float3> unit(const Double3& v) {
     if (!(length > 0) || !std::isfinite(length))
         return std::nullopt;
     const Double3 divided = {v[0] / length, v[1] / length, v[2] / length};
-    return float3_of(divided.data());
+    return kit::float3_of(divided.data());
 }
 
 std::optional<Double3> triple(const json& object, const char* name) {
@@ -62,15 +63,15 @@ std::string read_line(std::string_view line, std::vector<RelightPoint>& points) 
 }  // namespace
 
 bool read_point(const std::string& at, const std::string& normal, std::vector<RelightPoint>& points) {
-    const auto place = number_list(at, 3);
+    const auto place = kit::number_list(at, 3);
     if (!place) {
-        complain("relight: --at takes x,y,z, not \"" + at + "\"");
+        kit::complain("relight: --at takes x,y,z, not \"" + at + "\"");
         return false;
     }
-    const auto numbers = number_list(normal, 3);
+    const auto numbers = kit::number_list(normal, 3);
     const auto direction = numbers ? unit({(*numbers)[0], (*numbers)[1], (*numbers)[2]}) : std::nullopt;
     if (!direction) {
-        complain("relight: --normal takes x,y,z of some length, not \"" + normal + "\"");
+        kit::complain("relight: --normal takes x,y,z of some length, not \"" + normal + "\"");
         return false;
     }
     points.push_back({{(*place)[0], (*place)[1], (*place)[2]}, *direction});
@@ -78,10 +79,10 @@ bool read_point(const std::string& at, const std::string& normal, std::vector<Re
 }
 
 int read_points(const std::string& path, std::vector<RelightPoint>& points) {
-    const TextRead file = path == "-" ? read_standard_input() : read_text(path);
+    const kit::TextRead file = path == "-" ? kit::read_standard_input() : kit::read_text(path);
     if (!file.error.empty()) {
-        complain(file.error);
-        return exit_unreadable;
+        kit::complain(file.error);
+        return kit::exit_unreadable;
     }
     std::string_view rest = file.text;
     for (std::size_t number = 1; !rest.empty(); ++number) {
@@ -92,11 +93,11 @@ int read_points(const std::string& path, std::vector<RelightPoint>& points) {
             continue;
         if (const std::string wrong = read_line(line, points); !wrong.empty()) {
             const std::string where = path == "-" ? "standard input" : path;
-            complain(where + ", line " + std::to_string(number) + ": " + wrong);
-            return exit_usage;
+            kit::complain(where + ", line " + std::to_string(number) + ": " + wrong);
+            return kit::exit_usage;
         }
     }
-    return exit_valid;
+    return kit::exit_valid;
 }
 
 }  // namespace drtv::tool

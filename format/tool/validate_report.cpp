@@ -32,7 +32,7 @@ void print_file(const CheckedFile& file) {
                     report.findings.size());
 }
 
-void append_finding(JsonWriter& json, const Finding& finding) {
+void append_finding(kit::JsonWriter& json, const Finding& finding) {
     json.begin_object();
     json.member("code", finding.issue->code);
     json.member("severity", name_of(finding.issue->severity));
@@ -48,7 +48,7 @@ void append_finding(JsonWriter& json, const Finding& finding) {
     json.end_object();
 }
 
-void append_file(JsonWriter& json, const CheckedFile& file, bool valid) {
+void append_file(kit::JsonWriter& json, const CheckedFile& file, bool valid) {
     const Report& report = file.report;
     json.begin_object();
     json.member("file", file.path);

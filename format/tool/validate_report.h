@@ -2,7 +2,7 @@
 #pragma once
 
 #include "check_files.h"
-#include "json_writer.h"
+#include "kit/json_writer.h"
 
 #include <cstddef>
 
@@ -21,7 +21,7 @@ class ValidateReport {
 
   private:
     const bool as_json_;
-    JsonWriter json_;
+    kit::JsonWriter json_;
     std::size_t checked_ = 0;
     std::size_t invalid_ = 0;
     std::size_t warnings_ = 0;

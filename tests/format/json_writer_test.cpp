@@ -1,5 +1,5 @@
 // JsonWriter read back by nlohmann_json.
-#include "format/tool/json_writer.h"
+#include "format/kit/json_writer.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace drtv::tool {
+namespace drtv::kit {
 namespace {
 
 std::string json_of(std::string_view text) {
@@ -112,4 +112,4 @@ TEST(JsonWriter, IntegersAreExact) {
 }
 
 }  // namespace
-}  // namespace drtv::tool
+}  // namespace drtv::kit

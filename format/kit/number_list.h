@@ -9,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 // Nothing unless the text is exactly `count` finite numbers with commas between.
 [[nodiscard]] std::optional<std::vector<double>> number_list(std::string_view text, std::size_t count);
 
 [[nodiscard]] Float3 float3_of(const double* numbers);
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

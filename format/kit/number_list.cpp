@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 std::optional<std::vector<double>> number_list(std::string_view text, std::size_t count) {
     std::vector<double> numbers;
@@ -28,4 +28,4 @@ Float3 float3_of(const double* numbers) {
     return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2])};
 }
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 std::string joined(const std::vector<std::string>& words) {
     return CLI::detail::join(words, ", ");
@@ -48,4 +48,4 @@ CLI::Validator finite_number() {
     return {check, ""};
 }
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 // As on the command line. What is not given is dark, but static light, which is 1.
 struct LightRequest {
@@ -39,7 +39,8 @@ struct RequestedLight {
     RequestedLight& operator=(const RequestedLight&) = delete;
 };
 
-// Gives the exit code: not exit_valid, and a complaint, where an argument or the file is wrong.
-[[nodiscard]] int read_light(const LightRequest& request, RequestedLight& light);
+// Gives the exit code: not exit_valid, and a complaint in the name of the command, where an argument or the
+// file is wrong.
+[[nodiscard]] int read_light(const LightRequest& request, const std::string& command, RequestedLight& light);
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 RelitVolume::RelitVolume(const SectorSet& set,
                          const SceneLight& light,
@@ -30,4 +30,4 @@ const Volume& RelitVolume::at(const Double3& camera) {
     return volume_;
 }
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 class JsonWriter {
   public:
@@ -59,4 +59,4 @@ class JsonWriter {
     bool after_key_ = false;
 };
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

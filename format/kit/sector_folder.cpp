@@ -1,6 +1,6 @@
 #include "sector_folder.h"
 
-#include "commands.h"
+#include "exit_code.h"
 #include "files.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-namespace drtv::tool {
+namespace drtv::kit {
 namespace {
 
 using Place = std::pair<std::int32_t, std::int32_t>;  // (i, j)
@@ -68,4 +68,4 @@ int SectorFolder::load(const std::string& path, const std::vector<Double3>& plac
     return exit_valid;
 }
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

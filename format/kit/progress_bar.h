@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 class ProgressBar {
   public:
@@ -27,4 +27,4 @@ class ProgressBar {
     bool drawn_ = false;
 };
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 class SectorFolder {
   public:
@@ -29,4 +29,4 @@ class SectorFolder {
     std::unique_ptr<SectorSet> set_;
 };
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 struct Image {
     std::size_t width = 0;
@@ -24,4 +24,4 @@ struct Image {
 // Empty where memory is short.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

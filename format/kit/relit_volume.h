@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 class RelitVolume {
   public:
@@ -28,4 +28,4 @@ class RelitVolume {
     Volume volume_;
 };
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-namespace drtv::tool {
+namespace drtv::kit {
 namespace {
 
 constexpr auto first_after = std::chrono::milliseconds(300), between = std::chrono::milliseconds(100);
@@ -42,4 +42,4 @@ void ProgressBar::show(std::size_t done) {
     std::fflush(stderr);
 }
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 // "a, b, c"
 [[nodiscard]] std::string joined(const std::vector<std::string>& words);
@@ -18,4 +18,4 @@ namespace drtv::tool {
 [[nodiscard]] CLI::Validator number_below(double max);
 [[nodiscard]] CLI::Validator finite_number();
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -1,6 +1,6 @@
 #include "files.h"
 
-#include "commands.h"
+#include "exit_code.h"
 
 #include <drtv/read.h>
 
@@ -16,7 +16,7 @@
 #include <system_error>
 #include <utility>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 namespace fs = std::filesystem;
 
@@ -202,4 +202,4 @@ std::optional<Sector> load_sector(const std::string& path, int& exit_code, FileB
     });
 }
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

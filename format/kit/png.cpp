@@ -1,11 +1,11 @@
-#include "png_writer.h"
+#include "png.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #define STBI_WRITE_NO_STDIO
 #include <stb/stb_image_write.h>
 
-namespace drtv::tool {
+namespace drtv::kit {
 namespace {
 
 void append(void* png, void* data, int size) {
@@ -27,4 +27,4 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
     return png;
 }
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

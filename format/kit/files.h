@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace drtv::tool {
+namespace drtv::kit {
 
 using FileBytes = std::vector<std::uint8_t>;
 using FilePaths = std::vector<std::string>;
@@ -62,4 +62,4 @@ struct RawSector {
                                                 int& exit_code,
                                                 FileBytes* bytes = nullptr);
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace drtv::tool {
+namespace drtv::kit {
 namespace {
 
 template <class Number>
@@ -122,4 +122,4 @@ JsonWriter& JsonWriter::value(std::uint64_t number) {
     return *this;
 }
 
-}  // namespace drtv::tool
+}  // namespace drtv::kit

@@ -1,5 +1,5 @@
 // encode_png() read back by stb_image.
-#include "format/tool/png_writer.h"
+#include "format/kit/png.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include <functional>
 #include <random>
 
-namespace drtv::tool {
+namespace drtv::kit {
 namespace {
 
 using Colour = std::function<std::uint8_t(std::size_t x, std::size_t y, std::size_t channel)>;
@@ -66,4 +66,4 @@ TEST(PngWriter, SmoothPictureIsReadBackAndSmall) {
 }
 
 }  // namespace
-}  // namespace drtv::tool
+}  // namespace drtv::kit
