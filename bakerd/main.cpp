@@ -1,8 +1,10 @@
 // bakerd: parse, wire, run.
 #include "bakerd/farm/farm.h"
+#include "bakerd/picture/render_request.h"
 #include "bakerd/service/server.h"
 #include "bakerd/trace/device.h"
 #include "bakerd/worker/worker.h"
+#include "format/kit/exit_code.h"
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -126,6 +128,11 @@ int main(int argc, char** argv) {
     worker_command->add_option("--threads", worker_options.threads, "Threads to bake with; 0: all")
         ->check(CLI::Range(0, 1024));
 
+    drtv::picture::RenderRequest render_request;
+    CLI::App* render_command =
+        app.add_subcommand("render", "Picture of a map in the light of its sector files");
+    drtv::picture::add_render(*render_command, render_request);
+
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -134,10 +141,16 @@ int main(int argc, char** argv) {
         const std::string what = app.get_subcommands().empty() && !app.remaining().empty()
                                      ? fmt::format("there is no command '{}'", app.remaining().front())
                                      : error.what();
+        if (*render_command) {
+            complain("render: " + what + "; bakerd render --help says more");
+            return drtv::kit::exit_usage;
+        }
         complain(what + "; bakerd --help lists what there is");
         return 2;
     }
     if (*worker_command)
         return drtv::worker::run_worker(worker_options);
+    if (*render_command)
+        return drtv::picture::run_render(render_request);
     return serve(serve_options);
 }

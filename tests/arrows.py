@@ -32,8 +32,24 @@ ARROWS = {
     },
     "bakerd/farm": {"bakerd/worker", "bakerd/store", "bakerd/reuse", "bakerd/bake", "bakerd/map"},
     "bakerd/service": {"bakerd/farm", "bakerd/worker", "bakerd/store", "bakerd/reuse", "bakerd/map", "proto"},
+    "bakerd/picture": {
+        "bakerd/bake",
+        "bakerd/trace",
+        "bakerd/map",
+        "format",
+        "format/runtime",
+        "format/light",
+        "format/kit",
+    },
     # main wires the rooms together and asks trace whether this CPU will do.
-    "bakerd": {"bakerd/farm", "bakerd/service", "bakerd/trace", "bakerd/worker"},
+    "bakerd": {
+        "bakerd/farm",
+        "bakerd/picture",
+        "bakerd/service",
+        "format/kit",
+        "bakerd/trace",
+        "bakerd/worker",
+    },
     "client": {"proto"},
 }
 
@@ -43,18 +59,18 @@ OPEN_HEADERS = {"drtv/conventions.h": {"placement", "bakerd/map"}}
 # Foreign headers -> the only rooms that may include them.
 FOREIGN = {
     r"tiny_gltf\.h": {"bakerd/map"},
-    r"stb/": {"bakerd/map", "client", "format/kit"},
+    r"stb/": {"bakerd/map", "bakerd/picture", "client", "format/kit"},
     r"embree3/": {"bakerd/trace"},
     r"CGAL/": {"placement"},
-    r"glm/": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/reuse"},
-    r"tbb/": {"bakerd/bake", "bakerd/reuse", "bakerd/worker"},
+    r"glm/": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/reuse", "bakerd/picture"},
+    r"tbb/": {"bakerd/bake", "bakerd/reuse", "bakerd/worker", "bakerd/picture"},
     r"zstd\.h": {"format", "bakerd/reuse"},
     r"(sqlite3\.h|SQLiteCpp/)": {"bakerd/farm"},
     r"(grpcpp|grpc)/": {"bakerd/service", "client"},
     r"google/protobuf/": {"bakerd/service"},
     r"nlohmann/": {"format/light", "format/tool", "bakerd/map", "bakerd/store", "bakerd/worker", "client"},
     r"openssl/": {"bakerd/map", "client"},
-    r"CLI/": {"bakerd", "client", "format/kit", "format/tool"},
+    r"CLI/": {"bakerd", "bakerd/picture", "client", "format/kit", "format/tool"},
     r"spdlog/": {"bakerd", "bakerd/worker", "bakerd/farm", "bakerd/service"},
     r"fmt/": {
         "bakerd",
@@ -67,6 +83,7 @@ FOREIGN = {
         "bakerd/worker",
         "bakerd/farm",
         "bakerd/service",
+        "bakerd/picture",
         "client",
     },
     r"tl/expected": {
@@ -79,6 +96,7 @@ FOREIGN = {
         "bakerd/worker",
         "bakerd/farm",
         "bakerd/service",
+        "bakerd/picture",
         "client",
     },
 }

@@ -1,8 +1,12 @@
-// PNG files, 8-bit RGB, encoded by stb.
+// PNG files, 8-bit RGB, by stb.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace drtv::kit {
@@ -21,7 +25,24 @@ struct Image {
     }
 };
 
+// Names the part of the world that a picture from above shows: x0,y0,x1,y1 in metres.
+inline constexpr const char* world_rectangle_key = "drtv:world";
+
+// A line of text in the file, which pictures are shown without: Latin-1, the key 1 to 79 characters.
+struct PngText {
+    std::string key;
+    std::string text;
+};
+
 // Empty where memory is short.
-[[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);
+[[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image,
+                                                   const std::vector<PngText>& texts = {});
+
+// Nothing where the bytes are no PNG file of at most 64 megapixels; `why` is then a reason. Transparency is
+// left out.
+[[nodiscard]] std::optional<Image> decode_png(std::span<const std::uint8_t> png, std::string& why);
+
+// The first text of that key; nothing where there is none.
+[[nodiscard]] std::optional<std::string> png_text(std::span<const std::uint8_t> png, std::string_view key);
 
 }  // namespace drtv::kit

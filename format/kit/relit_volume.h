@@ -20,6 +20,9 @@ class RelitVolume {
     // With the window around the camera, until the next call.
     [[nodiscard]] const Volume& at(const Double3& camera);
 
+    // All sectors' probes.
+    [[nodiscard]] const RelitProbes& relit() const { return relit_; }
+
   private:
     const SectorSet& set_;
     std::vector<std::byte> relit_memory_;

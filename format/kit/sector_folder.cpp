@@ -33,17 +33,17 @@ std::set<Place> wanted(const std::vector<Double3>& places) {
 
 }  // namespace
 
-int SectorFolder::load(const std::string& path, const std::vector<Double3>& places) {
+template <class IsWanted>
+int SectorFolder::load_if(const std::string& path, const IsWanted& is_wanted) {
     const auto files = sector_files(path);
     if (!files)
         return exit_unreadable;
-    const std::set<Place> sectors = wanted(places);
     std::map<Place, std::string> named;
     SectorSetLimits limits{0, 0, 0, 0};
     for (const std::string& file : *files) {
         const auto place = sector_of_file(file);
         // A file that does not even say its sector may be one that is wanted.
-        if (place && !sectors.contains(*place))
+        if (place && !is_wanted(*place))
             continue;
         int exit_code = exit_valid;
         std::optional<RawSector> sector = load_raw_sector(file, exit_code);
@@ -66,6 +66,20 @@ int SectorFolder::load(const std::string& path, const std::vector<Double3>& plac
     for (const auto& file : files_)
         set_->load(file);
     return exit_valid;
+}
+
+int SectorFolder::load(const std::string& path, const std::vector<Double3>& places) {
+    const std::set<Place> sectors = wanted(places);
+    return load_if(path, [&](const Place& place) { return sectors.contains(place); });
+}
+
+int SectorFolder::load(const std::string& path, const WorldSquare& square) {
+    return load_if(path, [&](const Place& place) {
+        const double x = place.first * sector_size_m;
+        const double y = place.second * sector_size_m;
+        return x < square.x1 && x + sector_size_m > square.x0 && y < square.y1 &&
+               y + sector_size_m > square.y0;
+    });
 }
 
 }  // namespace drtv::kit

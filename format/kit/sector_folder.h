@@ -11,6 +11,11 @@
 
 namespace drtv::kit {
 
+// Half open.
+struct WorldSquare {
+    double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
 class SectorFolder {
   public:
     // Sectors up to this many away from a place's are loaded: all that can bear on it but far interiors.
@@ -19,11 +24,16 @@ class SectorFolder {
     // Gives the exit code: not exit_valid, and a complaint, where the folder, or a sector that is wanted,
     // cannot be read. Sectors that are not there are none.
     [[nodiscard]] int load(const std::string& path, const std::vector<Double3>& places);
+    // The same of sectors that come within a square of the world, metres.
+    [[nodiscard]] int load(const std::string& path, const WorldSquare& square);
 
     // REQUIRES: loaded.
     [[nodiscard]] const SectorSet& set() const { return *set_; }
 
   private:
+    template <class IsWanted>
+    [[nodiscard]] int load_if(const std::string& path, const IsWanted& is_wanted);
+
     std::vector<std::vector<std::uint8_t>> files_;  // raw
     std::vector<std::byte> memory_;
     std::unique_ptr<SectorSet> set_;

@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "ground_map.h"
 #include "kit/exit_code.h"
+#include "kit/srgb.h"
 #include "map_extent.h"
 
 #include <algorithm>
@@ -18,17 +19,10 @@ constexpr Float3 empty_colour = {0.012f, 0.014f, 0.02f};
 
 constexpr std::size_t max_covered_sectors = std::size_t{1} << 18;
 
-std::uint8_t encode_srgb(float linear) {
-    const float x = std::clamp(linear, 0.0f, 1.0f);
-    const bool dark = x <= 0.0031308f;
-    const float s = dark ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-    return static_cast<std::uint8_t>(s * 255 + 0.5f);
-}
-
 using Pixel = std::array<std::uint8_t, 3>;
 
 Pixel encode_pixel(const Float3& linear) {
-    return {encode_srgb(linear[0]), encode_srgb(linear[1]), encode_srgb(linear[2])};
+    return {kit::encode_srgb(linear[0]), kit::encode_srgb(linear[1]), kit::encode_srgb(linear[2])};
 }
 
 void put_pixel(kit::Image& image, std::size_t x, std::size_t y, const Pixel& pixel) {

@@ -1,0 +1,135 @@
+#include "bakerd/picture/draw.h"
+
+#include "bakerd/map/colour.h"
+#include "bakerd/picture/film.h"
+#include "bakerd/trace/device.h"
+#include "format/kit/srgb.h"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <span>
+#include <vector>
+
+namespace drtv::picture {
+namespace {
+
+// Codes of 255 by which a pixel differs from a neighbour.
+constexpr int edge = 12;
+// A rotated square: no two lie in one row or column.
+constexpr std::array<glm::vec2, 4> inside_pixel = {
+    {{0.375f, 0.125f}, {0.875f, 0.375f}, {0.125f, 0.625f}, {0.625f, 0.875f}}};
+
+class Drawing {
+  public:
+    Drawing(const Painter& painter, Size size, float exposure, const Progress& progress)
+        : painter_(painter),
+          size_(size),
+          exposure_(exposure),
+          progress_(progress),
+          image_(size.width, size.height) {}
+
+    kit::Image run() {
+        for_each_row([&](std::size_t y) {
+            for (std::size_t x = 0; x < size_.width; ++x)
+                put(image_, x, y, shown(middle(x, y)));
+        });
+        if (!painter_.is_light())
+            return std::move(image_);
+        kit::Image smooth = image_;
+        for_each_row([&](std::size_t y) {
+            for (std::size_t x = 0; x < size_.width; ++x) {
+                if (is_edge(x, y))
+                    put(smooth, x, y, smoothed(x, y));
+            }
+        });
+        return smooth;
+    }
+
+  private:
+    template <class Use>
+    void for_each_row(const Use& use) {
+        tbb::parallel_for(std::size_t{0}, size_.height, [&](std::size_t y) {
+            const trace::FloatMode float_mode;
+            use(y);
+            progress_(++done_);
+        });
+    }
+
+    static glm::vec2 middle(std::size_t x, std::size_t y) {
+        return glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f;
+    }
+
+    // Linear, 0 to 1.
+    glm::vec3 shown(glm::vec2 pixel) const {
+        const glm::vec3 colour = painter_.colour(pixel);
+        return painter_.is_light() ? filmic(colour * exposure_) : colour;
+    }
+
+    glm::vec3 smoothed(std::size_t x, std::size_t y) const {
+        glm::vec3 sum(0);
+        for (const glm::vec2& at : inside_pixel)
+            sum += shown(middle(x, y) - 0.5f + at);
+        return sum / static_cast<float>(inside_pixel.size());
+    }
+
+    static void put(kit::Image& image, std::size_t x, std::size_t y, const glm::vec3& linear) {
+        std::uint8_t* pixel = image.at(x, y);
+        for (glm::length_t c = 0; c < 3; ++c)
+            pixel[c] = kit::encode_srgb(linear[c]);
+    }
+
+    bool is_edge(std::size_t x, std::size_t y) {
+        return (x > 0 && differ(x, y, x - 1, y)) || (x + 1 < size_.width && differ(x, y, x + 1, y)) ||
+               (y > 0 && differ(x, y, x, y - 1)) || (y + 1 < size_.height && differ(x, y, x, y + 1));
+    }
+    bool differ(std::size_t x, std::size_t y, std::size_t other_x, std::size_t other_y) {
+        const std::uint8_t* a = image_.at(x, y);
+        const std::uint8_t* b = image_.at(other_x, other_y);
+        return std::abs(a[0] - b[0]) > edge || std::abs(a[1] - b[1]) > edge || std::abs(a[2] - b[2]) > edge;
+    }
+
+    const Painter& painter_;
+    const Size size_;
+    const float exposure_;
+    const Progress& progress_;
+    std::atomic<std::size_t> done_ = 0;
+    kit::Image image_;
+};
+
+}  // namespace
+
+std::size_t draw_steps(Size size) {
+    return 2 * size.height;
+}
+
+kit::Image draw(const Painter& painter, Size size, float exposure, const Progress& progress) {
+    return Drawing(painter, size, exposure, progress).run();
+}
+
+float mean_luminance(const Painter& painter, const Camera& camera, const trace::Scene& scene) {
+    constexpr std::size_t columns = 64;
+    constexpr std::size_t rows = 36;
+    const glm::vec2 step = glm::vec2(camera.size().width, camera.size().height) / glm::vec2(columns, rows);
+    std::array<float, columns * rows> luminances{};
+    tbb::parallel_for(std::size_t{0}, luminances.size(), [&](std::size_t n) {
+        const trace::FloatMode float_mode;
+        const glm::vec2 pixel = (glm::vec2(n % columns, n / columns) + 0.5f) * step;
+        if (scene.closest(camera.ray(pixel)))
+            luminances[n] = map::luminance(painter.colour(pixel));
+    });
+    double sum = 0;
+    std::size_t count = 0;
+    for (const float luminance : luminances) {
+        if (!(luminance > 0))
+            continue;
+        sum += std::log(static_cast<double>(luminance));
+        ++count;
+    }
+    return count > 0 ? static_cast<float>(std::exp(sum / static_cast<double>(count))) : 0;
+}
+
+}  // namespace drtv::picture

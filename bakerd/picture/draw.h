@@ -1,0 +1,24 @@
+// Pictures from painters.
+#pragma once
+
+#include "bakerd/picture/painter.h"
+#include "format/kit/png.h"
+
+#include <functional>
+
+namespace drtv::picture {
+
+// Told how many of `total` steps are done; from any thread.
+using Progress = std::function<void(std::size_t done)>;
+
+// Rows of a picture are its steps, twice where edges are smoothed.
+[[nodiscard]] std::size_t draw_steps(Size size);
+
+// One ray through the middle of each pixel; where the picture shows light, four more where a pixel differs
+// from its neighbours. The same bytes for any number of threads. `exposure`: of light.
+[[nodiscard]] kit::Image draw(const Painter& painter, Size size, float exposure, const Progress& progress);
+
+// The geometric mean of the luminance of surfaces, over a grid of rays; 0 where no surface is lit.
+[[nodiscard]] float mean_luminance(const Painter& painter, const Camera& camera, const trace::Scene& scene);
+
+}  // namespace drtv::picture

@@ -1,0 +1,27 @@
+#include "bakerd/picture/film.h"
+
+#include <glm/common.hpp>
+
+#include <cmath>
+
+namespace drtv::picture {
+
+float exposure_of(float ev) {
+    return static_cast<float>(std::exp2(static_cast<double>(ev)));
+}
+
+glm::vec3 filmic(const glm::vec3& exposed) {
+    const glm::vec3 x = glm::max(exposed, glm::vec3(0));
+    const glm::vec3 bright = x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);
+    // What is not a number, infinity over infinity, is white.
+    return {bright.x < 1 ? bright.x : 1, bright.y < 1 ? bright.y : 1, bright.z < 1 ? bright.z : 1};
+}
+
+float ev_for(float mean_luminance) {
+    constexpr double middle = 0.1;
+    constexpr double steps = 4;
+    return static_cast<float>(
+        std::floor(std::log2(middle / static_cast<double>(mean_luminance)) * steps + 0.5) / steps);
+}
+
+}  // namespace drtv::picture

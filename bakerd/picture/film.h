@@ -1,0 +1,19 @@
+// From radiance to the bytes of a picture.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+namespace drtv::picture {
+
+// How much a radiance is raised: 2^EV. At EV 0 a radiance of 1 comes out nearly white.
+[[nodiscard]] float exposure_of(float ev);
+
+// Linear, 0 to 1, channel by channel: a curve that keeps dark parts and rolls off towards white (K.
+// Narkowicz, "ACES Filmic Tone Mapping Curve", 2016: a fit of the Academy's). Below 0 counts as 0.
+[[nodiscard]] glm::vec3 filmic(const glm::vec3& exposed);
+
+// The EV at which surfaces whose radiances have this geometric mean come out as a middle tone; in quarters,
+// so that it can be said again on the command line.
+[[nodiscard]] float ev_for(float mean_luminance);
+
+}  // namespace drtv::picture

@@ -1,0 +1,127 @@
+#include "bakerd/picture/moment.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+namespace drtv::picture {
+namespace {
+
+constexpr float sun_cosine = 0.99999f;  // of half its disc's angle, 0.256 degrees
+
+std::vector<LightShare> shares_of(const SectorSet& set, std::span<const PointLight> lamps) {
+    std::vector<LightShare> all;
+    for (const PointLight& lamp : lamps) {
+        std::array<LightShare, max_shares_per_light> shares;
+        const std::size_t count = split_light(set, lamp, shares);
+        all.insert(all.end(), shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+    return all;
+}
+
+VolumeSettings settings_of(const RelightChoice& choice) {
+    VolumeSettings settings;
+    settings.encoding = choice.encoding;
+    settings.outdoors = choice.interiors;
+    return settings;
+}
+
+void add(BasisColours& sum, const BasisColours& colours, float share) {
+    for (std::size_t b = 0; b < basis_count; ++b) {
+        for (std::size_t c = 0; c < channel_count; ++c)
+            sum[b][c] += share * colours[b][c];
+    }
+}
+
+}  // namespace
+
+Moment::Moment(const SectorSet& set,
+               const kit::RequestedLight& light,
+               const RelightChoice& choice,
+               const Double3& window)
+    : set_(set),
+      light_(light),
+      choice_(choice),
+      shares_(shares_of(set, light.lamps)),
+      relit_(set, light.light, shares_, settings_of(choice)),
+      volume_(choice.by == By::volume ? &relit_.at(window) : nullptr),
+      open_sky_(clamped(open_sky(light.light))) {}
+
+Ambient Moment::ambient(const glm::vec3& at, const glm::vec3& normal) const {
+    AmbientPlace place;
+    place.at = as_place(at);
+    place.normal = as_float3(normal);
+    place.offset_m = surface_offset_m;
+    place.interiors = choice_.interiors;
+    place.sampling = choice_.by == By::nearest ? Sampling::nearest : Sampling::trilinear;
+    return volume_ != nullptr ? ambient_in(*volume_, set_, light(), shares_, place)
+                              : ambient_at(set_, light(), shares_, place);
+}
+
+glm::vec3 Moment::ambient_colour(const glm::vec3& at, const glm::vec3& normal) const {
+    const Double3 asked = as_place(at + normal * surface_offset_m);
+    BasisColours sum{};
+    float outside = 1;
+    if (choice_.interiors) {
+        const InteriorShare interior = set_.interior(asked);
+        if (interior.share > 0) {
+            const std::uint8_t probe = interior.sector->view.interiors[interior.index].probe;
+            add(sum, relit_.relit().colours(*interior.sector, probe), interior.share);
+            outside -= interior.share;
+        }
+    }
+    if (outside > 0 && volume_ != nullptr) {
+        const Volume::Sample sample = volume_->sample(asked);
+        add(sum, sample.colours, outside * sample.weight);
+        if (sample.weight < 1)
+            add(sum, open_sky_, outside * (1 - sample.weight) * set_.sky_factor(asked));
+    } else if (outside > 0) {
+        const ProbeBlend named = choice_.by == By::nearest ? set_.nearest(asked) : set_.trilinear(asked);
+        add_blend(sum, choice_.interiors ? set_.outdoors(named) : named, asked, outside);
+    }
+    return as_vec(shade_ambient(light().mode, sum, as_float3(normal)));
+}
+
+void Moment::add_blend(BasisColours& sum, const ProbeBlend& blend, const Double3& asked, float share) const {
+    for (std::size_t n = 0; n < blend.count; ++n) {
+        const ProbeShare& probe = blend.probes[n];
+        add(sum, relit_.relit().colours(*probe.sector, probe.probe), share * probe.share);
+    }
+    if (blend.fallback > 0)
+        add(sum, open_sky_, share * blend.fallback * set_.sky_factor(asked));
+}
+
+glm::vec3 Moment::factor_of(std::string_view group) const {
+    if (group.empty())
+        return as_vec(light().static_colour);
+    const std::span<const GroupColour> groups = light().groups;
+    const auto named = std::ranges::find(groups, group, &GroupColour::name);
+    return as_vec(named == groups.end() ? light().other_groups : named->colour);
+}
+
+glm::vec3 Moment::sky(const glm::vec3& direction, bool with_sun) const {
+    glm::vec3 w = direction;
+    if (w.z < 0) {
+        w.z = 0;
+        const float length = glm::length(w);
+        w = length > 0 ? w / length : glm::vec3(1, 0, 0);
+    }
+    const Float4 harmonics = evaluate_sh(as_float3(w));
+    glm::vec3 radiance(0);
+    for (glm::length_t c = 0; c < 3; ++c) {
+        for (std::size_t i = 0; i < sh_count; ++i)
+            radiance[c] += light().sky[static_cast<std::size_t>(c)][i] * harmonics[i];
+    }
+    const Sun& sun = light().sun;
+    if (with_sun && sun.direction[2] > 0 &&
+        glm::dot(direction, glm::normalize(as_vec(sun.direction))) > sun_cosine) {
+        constexpr float solid_angle = 2 * std::numbers::pi_v<float> * (1 - sun_cosine);
+        radiance += as_vec(sun.irradiance) / solid_angle;
+    }
+    return glm::max(radiance, glm::vec3(0));
+}
+
+}  // namespace drtv::picture

@@ -1,0 +1,76 @@
+#include "bakerd/picture/pick.h"
+
+#include "bakerd/picture/painter.h"
+#include "bakerd/trace/device.h"
+#include "format/kit/json_writer.h"
+#include "format/kit/number_list.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace drtv::picture {
+namespace {
+
+void write_parts(kit::JsonWriter& json, const AmbientParts& parts) {
+    json.key("parts").begin_object();
+    json.key("sky_direct").array(parts.sky_direct);
+    json.key("sky_bounce").array(parts.sky_bounce);
+    json.key("sun_bounce").array(parts.sun_bounce);
+    json.key("static").array(parts.static_light);
+    json.key("local").array(parts.local);
+    json.key("fallback").array(parts.fallback);
+    json.end_object();
+}
+
+void write_surface(kit::JsonWriter& json,
+                   const Setting& setting,
+                   const Moment& moment,
+                   const SurfacePoint& point) {
+    const trace::Scene& scene = setting.scenery().scene();
+    const Ambient ambient = moment.ambient(point.at, point.hit.normal);
+    json.member("object", scene.object_of(point.hit).name);
+    json.key("at").array(as_float3(point.at));
+    json.key("normal").array(as_float3(point.hit.normal));
+    json.member("front", point.hit.front);
+    json.key("albedo").array(as_float3(point.surface.albedo));
+    json.key("probe");
+    if (ambient.probe.sector == nullptr) {
+        json.null();
+    } else {
+        const SectorView& view = ambient.probe.sector->view;
+        json.begin_object().key("sector").begin_array().value(view.i).value(view.j).end_array();
+        json.member("index", int{ambient.probe.probe}).end_object();
+    }
+    json.member("interior", ambient.interior.share);
+    json.key("ambient").array(ambient.colour);
+    write_parts(json, ambient.parts);
+    json.key("direct").array(as_float3(direct_light(setting.scenery(), moment, point)));
+}
+
+}  // namespace
+
+Expected<std::string> picked(const Setting& setting, const Moment& moment, const std::string& pixel) {
+    const trace::FloatMode float_mode;
+    const Camera& camera = setting.camera();
+    const Size size = camera.size();
+    const auto numbers = kit::number_list(pixel, 2);
+    const auto is_within = [](double n, std::size_t pixels) {
+        return n >= 0 && n < static_cast<double>(pixels) && n == std::floor(n);
+    };
+    if (!numbers || !is_within((*numbers)[0], size.width) || !is_within((*numbers)[1], size.height))
+        return failed(kit::exit_usage,
+                      fmt::format("render: --pick takes x,y of a pixel, up to {},{}, not \"{}\"",
+                                  size.width - 1,
+                                  size.height - 1,
+                                  pixel));
+    const glm::vec2 middle = glm::vec2((*numbers)[0], (*numbers)[1]) + 0.5f;
+    const auto point = surface_on(setting.scenery().scene(), camera, camera.ray(middle));
+    kit::JsonWriter json;
+    json.begin_object().key("pixel").array(*numbers);
+    if (point)
+        write_surface(json, setting, moment, *point);
+    return json.end_object().text();
+}
+
+}  // namespace drtv::picture

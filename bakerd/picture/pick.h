@@ -1,0 +1,17 @@
+// What is at one pixel of a picture.
+#pragma once
+
+#include "bakerd/picture/moment.h"
+#include "bakerd/picture/setting.h"
+
+#include <string>
+
+namespace drtv::picture {
+
+// As a JSON object. `pixel`: x,y from the upper left corner, from 0. Fails where the picture has no such
+// pixel.
+[[nodiscard]] Expected<std::string> picked(const Setting& setting,
+                                           const Moment& moment,
+                                           const std::string& pixel);
+
+}  // namespace drtv::picture

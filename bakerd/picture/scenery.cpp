@@ -1,0 +1,122 @@
+#include "bakerd/picture/scenery.h"
+
+#include "bakerd/map/import.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+namespace drtv::picture {
+namespace {
+
+namespace fs = std::filesystem;
+
+Expected<std::vector<fs::path>> files_of(const std::string& argument) {
+    std::error_code code;
+    const fs::path path = fs::weakly_canonical(fs::absolute(argument, code), code);
+    if (!fs::exists(path, code))
+        return failed(kit::exit_unreadable, fmt::format("the map {} does not exist", argument));
+    if (!fs::is_directory(path, code))
+        return std::vector<fs::path>{path};
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(path, code)) {
+        const fs::path extension = entry.path().extension();
+        if (extension == ".glb" || extension == ".gltf")
+            files.push_back(entry.path());
+    }
+    if (code)
+        return failed(kit::exit_unreadable,
+                      fmt::format("cannot read the folder {}: {}", argument, code.message()));
+    if (files.empty())
+        return failed(kit::exit_unreadable,
+                      fmt::format("the folder {} holds no .glb or .gltf file", argument));
+    return files;
+}
+
+fs::path common_folder(const std::vector<fs::path>& files) {
+    fs::path common = files.front().parent_path();
+    for (const fs::path& file : files) {
+        while (common != common.root_path() && *file.lexically_relative(common).begin() == "..")
+            common = common.parent_path();
+    }
+    return common;
+}
+
+std::size_t triangles_of(const map::Mesh& mesh) {
+    std::size_t count = 0;
+    for (const map::Primitive& primitive : mesh.primitives)
+        count += primitive.triangles.size();
+    return count;
+}
+
+bool is_near(const map::Bounds& bounds, glm::vec2 place) {
+    return glm::all(glm::lessThan(glm::vec2(bounds.low), place + sight_m)) &&
+           glm::all(glm::greaterThan(glm::vec2(bounds.high), place - sight_m));
+}
+
+std::size_t triangles_near(const map::Map& map, glm::vec2 place) {
+    std::vector<bool> counted(map.meshes.size());
+    std::size_t count = 0;
+    for (const map::Object& object : map.objects) {
+        if (counted[object.mesh] || !is_near(object.bounds, place))
+            continue;
+        counted[object.mesh] = true;
+        count += triangles_of(map.meshes[object.mesh]);
+    }
+    return count;
+}
+
+}  // namespace
+
+Expected<std::shared_ptr<const map::Map>> read_map(std::span<const std::string> arguments) {
+    std::vector<fs::path> files;
+    for (const std::string& argument : arguments) {
+        auto found = files_of(argument);
+        if (!found)
+            return tl::unexpected(found.error());
+        files.insert(files.end(), found->begin(), found->end());
+    }
+    std::ranges::sort(files);
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+    const fs::path folder = common_folder(files);
+    std::vector<std::string> roots;
+    for (const fs::path& file : files)
+        roots.push_back(file.lexically_relative(folder).generic_string());
+    auto map = map::import_map(roots, map::folder_source(folder.string()));
+    if (!map)
+        return failed(kit::exit_invalid, map.error());
+    return std::make_shared<const map::Map>(std::move(*map));
+}
+
+map::Bounds bounds_of(const map::Map& map) {
+    map::Bounds bounds;
+    for (const map::Object& object : map.objects) {
+        bounds.extend(object.bounds.low);
+        bounds.extend(object.bounds.high);
+    }
+    return bounds;
+}
+
+Expected<std::unique_ptr<const Scenery>> Scenery::build(std::shared_ptr<const map::Map> map,
+                                                        glm::vec2 around) {
+    const std::size_t triangles = triangles_near(*map, around);
+    if (triangles > max_triangles)
+        return failed(kit::exit_invalid,
+                      fmt::format("the map has {} million triangles in sight, over the limit of {} million; "
+                                  "name fewer of its files",
+                                  triangles / 1'000'000,
+                                  max_triangles / 1'000'000));
+    auto device = trace::Device::open();
+    if (!device)
+        return failed(kit::exit_unreadable, device.error());
+    trace::MapGeometry geometry(*device, map);
+    std::unique_ptr<Scenery> scenery(new Scenery(map));
+    scenery->scene_ = trace::Scene::build(geometry, {around, around}, sight_m);
+    return scenery;
+}
+
+}  // namespace drtv::picture

@@ -1,0 +1,63 @@
+// What a picture is of: the sectors, the map and the camera that a command line names.
+#pragma once
+
+#include "bakerd/picture/camera.h"
+#include "bakerd/picture/moment.h"
+#include "bakerd/picture/path_light.h"
+#include "bakerd/picture/render_request.h"
+#include "bakerd/picture/scenery.h"
+#include "bakerd/picture/show.h"
+#include "bakerd/picture/view_rule.h"
+#include "format/kit/sector_folder.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace drtv::picture {
+
+// "1,2.5,3", in millimetres.
+[[nodiscard]] std::string place_text(const glm::vec3& place);
+
+class Setting {
+  public:
+    // Fails with a sentence where something does not fit together.
+    [[nodiscard]] static Expected<std::unique_ptr<const Setting>> open(const RenderRequest& request);
+
+    [[nodiscard]] const SectorSet& sectors() const { return folder_.set(); }
+    [[nodiscard]] const Scenery& scenery() const { return *scenery_; }
+    [[nodiscard]] const Camera& camera() const { return *camera_; }
+    [[nodiscard]] const RelightChoice& choice() const { return choice_; }
+    [[nodiscard]] Show show() const { return show_; }
+    // What the files' paths were.
+    [[nodiscard]] const PathSettings& bake() const { return bake_; }
+    // The volume's middle.
+    [[nodiscard]] Double3 window() const { return as_place(camera_->eye()); }
+    // Where the rule chose it.
+    [[nodiscard]] const std::optional<View>& view() const { return view_; }
+    // What is seen from above.
+    [[nodiscard]] const Rectangle& world() const { return world_; }
+
+  private:
+    explicit Setting(const RenderRequest& request) : request_(request) {}
+    [[nodiscard]] Expected<void> read_choices();
+    [[nodiscard]] Expected<void> read_bake_settings();
+    [[nodiscard]] Expected<void> load_sectors(const map::Bounds& bounds);
+    [[nodiscard]] Expected<void> place_camera(const map::Bounds& bounds);
+    [[nodiscard]] Expected<void> check_camera() const;
+    void warn_of_other_map() const;
+
+    const RenderRequest& request_;
+    Size size_;
+    std::optional<View> asked_;  // on the command line
+    Show show_ = Show::all;
+    RelightChoice choice_;
+    kit::SectorFolder folder_;
+    PathSettings bake_;
+    std::unique_ptr<const Scenery> scenery_;
+    std::optional<Camera> camera_;
+    std::optional<View> view_;
+    Rectangle world_;
+};
+
+}  // namespace drtv::picture

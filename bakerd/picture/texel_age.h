@@ -1,0 +1,34 @@
+// When the texels of a volume were last written, for a camera that has walked to where it stands.
+#pragma once
+
+#include "bakerd/picture/moment.h"
+
+#include <drtv/volume.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace drtv::picture {
+
+class TexelAge {
+  public:
+    // The camera walks straight ahead, a metre a frame, so many metres.
+    static constexpr int walk_m = 64;
+
+    TexelAge(const SectorSet& set,
+             const kit::RequestedLight& light,
+             const RelightChoice& choice,
+             const glm::vec3& eye,
+             const glm::vec3& forward);
+
+    // Frames since the texel of a place was written, at most walk_m.
+    [[nodiscard]] int frames_at(const glm::vec3& place) const;
+
+  private:
+    void note(const Volume& volume, int frame);
+
+    VolumeSettings settings_;
+    std::vector<std::int32_t> written_;  // the frame, by place in the texture
+};
+
+}  // namespace drtv::picture
