@@ -12,7 +12,7 @@
 namespace drtv::bake {
 
 // Raised whenever the same map and settings begin to give other bytes.
-inline constexpr std::uint32_t baker_version = 5;
+inline constexpr std::uint32_t baker_version = 6;
 
 struct Settings {
     std::uint32_t rays = 2048;  // primary rays a probe, 16 to 65536

@@ -118,8 +118,9 @@ float mean_luminance(const Painter& painter, const Camera& camera, const trace::
     tbb::parallel_for(std::size_t{0}, luminances.size(), [&](std::size_t n) {
         const trace::FloatMode float_mode;
         const glm::vec2 pixel = (glm::vec2(n % columns, n / columns) + 0.5f) * step;
-        if (scene.closest(camera.ray(pixel)))
-            luminances[n] = map::luminance(painter.colour(pixel));
+        const auto point = surface_on(scene, camera, camera.ray(pixel));
+        if (point)
+            luminances[n] = map::luminance(painter.colour(pixel)) / std::sqrt(painter.brightness_of(*point));
     });
     double sum = 0;
     std::size_t count = 0;

@@ -17,11 +17,11 @@ glm::vec3 filmic(const glm::vec3& exposed) {
     return {bright.x < 1 ? bright.x : 1, bright.y < 1 ? bright.y : 1, bright.z < 1 ? bright.z : 1};
 }
 
-float ev_for(float mean_luminance) {
-    constexpr double middle = 0.1;
+float ev_for(float mean) {
+    constexpr double middle = 0.24;
     constexpr double steps = 4;
-    return static_cast<float>(
-        std::floor(std::log2(middle / static_cast<double>(mean_luminance)) * steps + 0.5) / steps);
+    return static_cast<float>(std::floor(std::log2(middle / static_cast<double>(mean)) * steps + 0.5) /
+                              steps);
 }
 
 }  // namespace drtv::picture

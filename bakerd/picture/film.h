@@ -12,8 +12,8 @@ namespace drtv::picture {
 // Narkowicz, "ACES Filmic Tone Mapping Curve", 2016: a fit of the Academy's). Below 0 counts as 0.
 [[nodiscard]] glm::vec3 filmic(const glm::vec3& exposed);
 
-// The EV at which surfaces whose radiances have this geometric mean come out as a middle tone; in quarters,
-// so that it can be said again on the command line.
-[[nodiscard]] float ev_for(float mean_luminance);
+// The EV at which surfaces of this mean (mean_luminance in draw.h) come out well; in quarters, so that it can
+// be said again on the command line.
+[[nodiscard]] float ev_for(float mean);
 
 }  // namespace drtv::picture

@@ -2,6 +2,7 @@
 
 #include "bakerd/bake/path.h"
 #include "bakerd/bake/sampling.h"
+#include "bakerd/map/colour.h"
 #include "bakerd/picture/probe_mix.h"
 
 #include <glm/common.hpp>
@@ -96,6 +97,12 @@ glm::vec3 Painter::colour(glm::vec2 pixel) const {
     if (picture::is_light(show_))
         return part_of(moment_.ambient(point->at, point->hit.normal), show_);
     return of_runtime(*point);
+}
+
+float Painter::brightness_of(const SurfacePoint& point) const {
+    constexpr float least = 0.02f;
+    const float albedo = map::luminance(point.surface.albedo + point.surface.transmitted);
+    return show_ == Show::all ? std::max(albedo, least) : 1;
 }
 
 glm::vec3 Painter::whole(const SurfacePoint& point) const {

@@ -31,6 +31,9 @@ class Painter {
     [[nodiscard]] glm::vec3 colour(glm::vec2 pixel) const;
     [[nodiscard]] bool is_light() const { return picture::is_light(show_); }
 
+    // How much of its light a surface shows.
+    [[nodiscard]] float brightness_of(const SurfacePoint& point) const;
+
     void use_age(const TexelAge& age) { age_ = &age; }
 
   private:

@@ -175,11 +175,13 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
         const float doubt_m = query_slack(ray, offered.distance_m) * 0.5f;
         const float least_m = offered.distance_m - doubt_m;
         const float most_m = offered.distance_m + doubt_m;
+        // Nearer, the ray may start beyond it.
+        const bool ahead = least_m > 0;
         const bool front = meets_front(set, offered);
         const Candidate& closest = query.closest.hit;
         if (least_m > closest.most_m && (closest.front || !front))
             return;
-        if (most_m < closest.least_m) {
+        if (ahead && most_m < closest.least_m) {
             Candidate& closer = query.closest.place_of_closer(front, most_m, ray);
             closer.id = id;
             closer.set = &set;
@@ -221,10 +223,12 @@ void occluded_filter(const RTCFilterFunctionNArguments* args) {
         }
         if (!set.mixed) {
             const EmbreeHit offered = embree_hit(*args, set, args->N, n);
-            const float most_m = offered.distance_m + query_slack(ray, offered.distance_m);
+            const float doubt_m = query_slack(ray, offered.distance_m);
+            const float most_m = offered.distance_m + doubt_m;
             // Nearer to the end, a surface may be the one on which the ray ends.
             const float sure_m = query.to_surface ? ray.far_m * (1 - 0x1p-6f) : ray.far_m;
-            if (most_m < sure_m && is_sure(ray, offered))
+            // Near the start, the ray may start beyond it.
+            if (offered.distance_m > doubt_m && most_m < sure_m && is_sure(ray, offered))
                 continue;
         }
         Candidate hit{id, &set, 0, 0, true, {}};

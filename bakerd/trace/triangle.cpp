@@ -57,6 +57,14 @@ double square(double x) {
     return x * x;
 }
 
+// Whether the start lies beyond the plane by more than it can be off: half of what path ends are kept away.
+// Of a ray along an axis Embree is asked beside the line (Sides), where this may look otherwise.
+bool starts_beyond(const Ray& ray, double distance_m, double facing, const glm::dvec3& normal) {
+    const double across = -distance_m * std::abs(facing);
+    const double off = static_cast<double>(rounding_m(ray, 0)) * 0.5;
+    return across > 0 && square(across) > square(off) * glm::dot(normal, normal);
+}
+
 }  // namespace
 
 Triangle transformed(const glm::mat4x3& world_from_object, const ObjectTriangle& triangle) {
@@ -88,6 +96,8 @@ std::optional<Intersection> intersect(const Ray& ray,
     found.u = static_cast<float>(u);
     found.v = static_cast<float>(v);
     found.normal = {normal[0], normal[1], normal[2]};
+    if (starts_beyond(ray, quotients[1], facing, found.normal))
+        return std::nullopt;
     if (square(facing) < flat_grazing * glm::dot(found.normal, found.normal)) {
         // Beside the triangle its plane may be anywhere: not beyond what the corners span.
         const Double4 along = sums(a * direction, ab * direction, ac * direction, a);

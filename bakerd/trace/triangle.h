@@ -38,7 +38,7 @@ struct Intersection {
 
 // REQUIRES: Embree's edge tests say that the ray meets the triangle. Where the ray passes an edge so closely
 // that rounding decides, they alone are consistent between the triangles at the edge: so the point is brought
-// inside, and never refused. Nothing when the ray runs exactly in the triangle's plane.
+// inside, and never refused. Nothing when the ray runs exactly in the triangle's plane, or starts beyond it.
 [[nodiscard]] std::optional<Intersection> intersect(const Ray& ray,
                                                     const glm::mat4x3& world_from_object,
                                                     const ObjectTriangle& triangle);

@@ -184,5 +184,44 @@ TEST(ClosestHit, EmptySceneIsSky) {
     EXPECT_TRUE(hits.empty());
 }
 
+// A ray along an axis, or in a plane of two, is asked for beside its line: there it may start beyond the
+// surface that it leaves.
+TEST(RayAlongAnAxis, LeavesTheSurfaceThatItStartsOn) {
+    std::mt19937 random(31);
+    int asked = 0;
+    for (int n = 0; n < 200; ++n) {
+        Thing thing = thing_of(level_square(4));
+        thing.world_from_shape = random_placement(random, n < 100 ? 20 : 4000, n % 2 == 1);
+        const auto scene = scene_of(std::vector{thing});
+        const glm::vec3 middle(scene->bounds().low * 0.5f + scene->bounds().high * 0.5f);
+        for (int k = 0; k < 20; ++k) {
+            const glm::vec3 way = random_direction(random);
+            const Ray there{middle - way * 30.0f, way, 100};
+            const auto hit = scene->closest(there);
+            const float facing = hit ? -glm::dot(hit->normal, way) : 0;
+            if (facing < 0.05f)
+                continue;
+            // As paths go on from a surface.
+            const float back_m = trace::rounding_m(there, hit->distance_m) / facing;
+            glm::vec3 onward = random_direction(random);
+            onward[k % 3] = 0;
+            if (k % 2 == 0)
+                onward[(k + 1) % 3] = 0;
+            onward = glm::normalize(onward);
+            if (glm::dot(onward, hit->normal) < 0)
+                onward = -onward;
+            if (glm::dot(onward, hit->normal) < 0.02f)
+                continue;
+            const Ray ray{there.origin + way * (hit->distance_m - back_m), onward, 1000};
+            ++asked;
+            EXPECT_FALSE(scene->occluded(ray)) << n << ", " << k;
+            EXPECT_FALSE(scene->closest(ray)) << n << ", " << k;
+            EXPECT_EQ(scene->crossings(ray), 0) << n << ", " << k;
+            EXPECT_EQ(scene->share_seen(ray, false), glm::vec3(1)) << n << ", " << k;
+        }
+    }
+    EXPECT_GT(asked, 1500);
+}
+
 }  // namespace
 }  // namespace drtv::test
