@@ -291,23 +291,33 @@ class Comparing {
             text += row(name, figures.by_part[n], mean);
         }
         text += row("all", figures.all, mean);
-        text += "causes, one after the other\n";
-        text += row("storage", figures.storage, mean);
-        text += row("interpolation", figures.interpolation, mean);
-        text += row("shading", figures.shading, mean);
+        text += "causes, each beside the next nearer to the truth\n";
+        text += cause("storage", figures.storage, mean);
+        text += cause("interpolation", figures.interpolation, mean);
+        text += cause("shading", figures.shading, mean);
         return text;
     }
 
     // Shares and errors of the mean of all light.
     static std::string row(std::string_view name, const Sum& sum, double mean) {
-        const auto count = static_cast<double>(std::max<std::size_t>(sum.count, 1));
-        const double unit = 100 / std::max(mean, 1e-30);
-        return fmt::format("{:<16}{:>9.1f}{:>9.1f}{:>9.1f}\n",
-                           name,
-                           unit * sum.truth / count,
-                           unit * (sum.found - sum.truth) / count,
-                           unit * std::sqrt(std::max(sum.squares / count, 0.0)));
+        return fmt::format("{:<16}{:>9.1f}{}", name, percent(sum.truth, sum, mean), errors(sum, mean));
     }
+    static std::string cause(std::string_view name, const Sum& sum, double mean) {
+        return fmt::format("{:<16}{:>9}{}", name, "", errors(sum, mean));
+    }
+    static std::string errors(const Sum& sum, double mean) {
+        const double squares =
+            std::max(sum.squares / static_cast<double>(std::max<std::size_t>(sum.count, 1)), 0.0);
+        return fmt::format("{:>9.1f}{:>9.1f}\n",
+                           percent(sum.found - sum.truth, sum, mean),
+                           100 * std::sqrt(squares) / std::max(mean, least_mean));
+    }
+    static double percent(double total, const Sum& sum, double mean) {
+        const auto count = static_cast<double>(std::max<std::size_t>(sum.count, 1));
+        return 100 * total / count / std::max(mean, least_mean);
+    }
+
+    static constexpr double least_mean = 1e-30;
 
     const Setting& setting_;
     const Moment& moment_;

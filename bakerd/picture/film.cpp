@@ -18,7 +18,7 @@ glm::vec3 filmic(const glm::vec3& exposed) {
 }
 
 float ev_for(float mean) {
-    constexpr double middle = 0.24;
+    constexpr double middle = 0.32;
     constexpr double steps = 4;
     return static_cast<float>(std::floor(std::log2(middle / static_cast<double>(mean)) * steps + 0.5) /
                               steps);

@@ -144,7 +144,7 @@ glm::vec3 Painter::of_runtime(const SurfacePoint& point) const {
             return weights_colour(moment_.light().mode, normal);
         case Show::age: {
             const auto frames = static_cast<float>(age_->frames_at(asked_place(point.at, normal)));
-            const float fresh = 1 - frames / TexelAge::walk_m;
+            const float fresh = 1 - frames / TexelAge::frames;
             return glm::vec3(fresh, fresh * fresh, fresh * fresh);
         }
         default:

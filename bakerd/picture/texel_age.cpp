@@ -17,8 +17,8 @@ TexelAge::TexelAge(const SectorSet& set,
                     static_cast<std::size_t>(settings_.size[1]) *
                     static_cast<std::size_t>(settings_.size[2]));
     kit::RelitVolume relit(set, light.light, {}, settings_);
-    for (int frame = 0; frame <= walk_m; ++frame)
-        note(relit.at(as_place(eye - forward * static_cast<float>(walk_m - frame))), frame);
+    for (int frame = 0; frame <= frames; ++frame)
+        note(relit.at(as_place(eye - forward * (step_m * static_cast<float>(frames - frame)))), frame);
 }
 
 void TexelAge::note(const Volume& volume, int frame) {
@@ -43,7 +43,7 @@ int TexelAge::frames_at(const glm::vec3& place) const {
     }
     const auto index =
         static_cast<std::size_t>((texel[2] * settings_.size[1] + texel[1]) * settings_.size[0] + texel[0]);
-    return walk_m - written_[index];
+    return frames - written_[index];
 }
 
 }  // namespace drtv::picture

@@ -12,8 +12,9 @@ namespace drtv::picture {
 
 class TexelAge {
   public:
-    // The camera walks straight ahead, a metre a frame, so many metres.
-    static constexpr int walk_m = 64;
+    // It walks straight ahead, so far a frame: over half of the volume in all.
+    static constexpr int frames = 64;
+    static constexpr float step_m = 3;
 
     TexelAge(const SectorSet& set,
              const kit::RequestedLight& light,
@@ -21,7 +22,7 @@ class TexelAge {
              const glm::vec3& eye,
              const glm::vec3& forward);
 
-    // Frames since the texel of a place was written, at most walk_m.
+    // Frames since the texel of a place was written, at most `frames`.
     [[nodiscard]] int frames_at(const glm::vec3& place) const;
 
   private:

@@ -8,7 +8,9 @@ from shapes import Part, box, prism
 
 WALL_M = 0.18
 ROOM_HEIGHT_M = 2.4
-ROOM_MARGIN_M = 0.05
+# How far an interior reaches beyond the inner faces: half of what it fades over, so that it holds at the walls
+# themselves (docs/runtime.md).
+ROOM_MARGIN_M = 0.5
 DOOR_M = (1.0, 2.0)  # width, height
 ROOF_M = 0.22  # thickness, along y
 EAVES_M = 0.55  # how far the roof stands out
@@ -25,7 +27,7 @@ class HutKind:
     roof: str
 
     def room(self):
-        """Low and high corner of the room, a little into its walls so that their inner faces lie inside."""
+        """Low and high corner of the room's interior."""
         x, z = self.length_m / 2 - WALL_M + ROOM_MARGIN_M, self.depth_m / 2 - WALL_M + ROOM_MARGIN_M
         return (-x, self.floor_m - ROOM_MARGIN_M, -z), (x, self.floor_m + ROOM_HEIGHT_M + ROOM_MARGIN_M, z)
 
@@ -149,6 +151,25 @@ def pier():
         for k in range(int(PIER_LENGTH_M / 4)):
             box(planks, (4 * k + 0.4, -9.0, z - 0.13), (4 * k + 0.66, PIER_DECK_M - 0.26, z + 0.13))
     return [planks]
+
+
+POST_HEIGHT_M, FLAME_M = 3.8, 0.1
+LAMP_UNDER_FLAME_M = 0.5  # where its point light is: nearer, it would light little but the flame
+
+
+def lantern_post():
+    """A post with an arm along +x, at whose end a flame burns under a small roof."""
+    timber, flame = Part("timber"), Part("flame")
+    box(timber, (-0.08, -0.8, -0.08), (0.08, POST_HEIGHT_M, 0.08))
+    box(timber, (0.08, POST_HEIGHT_M - 0.16, -0.05), (0.75, POST_HEIGHT_M - 0.06, 0.05))
+    x, y, _ = flame_of_post()
+    box(timber, (x - 0.18, y + 0.24, -0.18), (x + 0.18, POST_HEIGHT_M - 0.16, 0.18))
+    box(flame, (x - FLAME_M, y - FLAME_M, -FLAME_M), (x + FLAME_M, y + FLAME_M, FLAME_M))
+    return [timber, flame]
+
+
+def flame_of_post():
+    return 0.55, POST_HEIGHT_M - 0.45, 0.0
 
 
 def volume(low, high):

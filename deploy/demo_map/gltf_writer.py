@@ -48,6 +48,9 @@ class GltfWriter:
         if name not in self.material_index:
             self.material_index[name] = len(self.root["materials"])
             self.root["materials"].append({"name": name, **self.known_materials[name]})
+            for extension in self.known_materials[name].get("extensions", {}):
+                if extension not in self.root["extensionsUsed"]:
+                    self.root["extensionsUsed"].append(extension)
             if "baseColorTexture" in self.known_materials[name]["pbrMetallicRoughness"]:
                 self.root.update(textures=[{"source": 0}], images=[{"uri": self.image_uri}])
         return self.material_index[name]

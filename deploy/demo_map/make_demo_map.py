@@ -11,14 +11,19 @@ import sys
 
 import buildings
 from gltf_writer import GltfWriter
-from island import PATHS, SOUTH_M, SPACING_M, TILE_M, TOWER, WEST_M, Island
+from island import PATHS, SOUTH_M, SPACING_M, TILE_M, TOWER, VILLAGES, WEST_M, Island
 from map_builder import MapBuilder, MapError, print_stats, yaw
 from plants import leaf_png
+from portable_math import cos_sin
 from scatter import add_plants, add_rocks
 from shapes import Part
 
 COPYRIGHT = "Ground: Maunga Whau, digitised by Ross Ihaka (R datasets). Models: drtv, CC0."
 MOST_PLANTS = 20000
+
+# Bright beside the day of day.json, whose noon is a tenth of a real one: one exposure holds from noon to night.
+LANTERN_CD, HUT_LAMP_CD, FLAME_NITS = 26000, 700, 20000
+POSTS_A_VILLAGE, POST_RING_M = 6, 13.0
 
 
 def opaque(r, g, b):
@@ -50,6 +55,11 @@ MATERIALS = {
     "clay": opaque(0.36, 0.13, 0.07),
     "ochre": opaque(0.45, 0.27, 0.08),
     "foliage": opaque(0.05, 0.095, 0.022),
+    "flame": {
+        **opaque(0.8, 0.5, 0.2),
+        "emissiveFactor": [1, 0.6, 0.25],
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": FLAME_NITS}},
+    },
     "leaf_palm": leaf(0.95, 0.95, 0.9),
     "leaf_light": leaf(0.85, 0.9, 0.8),
     "leaf_dark": leaf(0.7, 0.75, 0.7),
@@ -110,7 +120,7 @@ def sea_square():
 
 def add_huts(builder):
     """Every hut a static node; in each village the first two are marked as interiors, with a lamp and a probe of their own."""
-    lamp = builder.writer.light("lamp", (1.0, 0.72, 0.42), 35)
+    lamp = builder.writer.light("lamp", (1.0, 0.72, 0.42), HUT_LAMP_CD)
     inland_kinds, shore_kinds = ("hut_thatch", "hut_stone", "hut_lime"), ("hut_stilts", "hut_painted")
     for number, site in enumerate(builder.island.sites):
         kinds = shore_kinds if site.village == "shore" else inland_kinds
@@ -134,10 +144,10 @@ def add_huts(builder):
                 bake_role="interior",
                 bake_probe=probe,
             )
-            builder.writer.node(hut, probe, translation=(0, low[1] + 1.3, 0), bake_role="probe")
-            above_table = (0.4, high[1] - 0.35, -0.3)
+            builder.writer.node(hut, probe, translation=(0, kind.floor_m + 1.25, 0), bake_role="probe")
+            under_ceiling = (0, kind.floor_m + buildings.ROOM_HEIGHT_M - 0.3, 0)
             builder.writer.node(
-                hut, f"lamp_{site.name}", translation=above_table, light=lamp, light_group="huts"
+                hut, f"lamp_{site.name}", translation=under_ceiling, light=lamp, light_group="huts"
             )
 
 
@@ -154,7 +164,30 @@ def add_tower(builder):
     builder.writer.node(tower, "tower_air", air, bake_role="no_probes")
 
 
-def add_pier(builder):
+def add_lanterns(builder):
+    """Posts around each village's green, their flames towards it; all lanterns of the island are one light group."""
+    lantern = builder.writer.light("lantern", (1.0, 0.72, 0.42), LANTERN_CD)
+    x_m, flame_m, _ = buildings.flame_of_post()
+    for village, (x, y) in VILLAGES.items():
+        for number in range(POSTS_A_VILLAGE):
+            cosine, sine = cos_sin((number + 0.5) / POSTS_A_VILLAGE)
+            at_x, at_y = x + POST_RING_M * cosine, y + POST_RING_M * sine
+            post = builder.writer.node(
+                builder.tile(at_x, at_y),
+                f"post_{village}_{number}",
+                builder.mesh("post", buildings.lantern_post),
+                (at_x, builder.island.ground_m(at_x, at_y), -at_y),
+                yaw(-sine, -cosine),
+                light_group="lanterns",
+            )
+            below = (x_m, flame_m - buildings.LAMP_UNDER_FLAME_M, 0)
+            builder.writer.node(
+                post, f"lantern_{village}_{number}", translation=below, light=lantern, light_group="lanterns"
+            )
+    add_pier(builder, lantern)
+
+
+def add_pier(builder, lantern):
     """It begins where its path meets the beach; at its end stand a lantern and a crate, which the game moves about."""
     x, y = PATHS[3][1]
     while builder.island.ground_m(x, y) > 0.7:
@@ -163,7 +196,6 @@ def add_pier(builder):
     end = (buildings.PIER_LENGTH_M - 1, buildings.PIER_DECK_M, 0.6)
     crate = builder.mesh("crate", lambda: [crate_part()])
     builder.writer.node(pier, "crate", crate, end, bake_role="ignore")
-    lantern = builder.writer.light("lantern", (1.0, 0.8, 0.5), 60)
     above_deck = (end[0], 3.2, -1.0)
     builder.writer.node(pier, "lantern", translation=above_deck, light=lantern, light_group="lanterns")
 
@@ -202,7 +234,7 @@ def main():
         add_ground_and_sea(builder)
         add_huts(builder)
         add_tower(builder)
-        add_pier(builder)
+        add_lanterns(builder)
         add_rocks(builder, arguments.seed)
         add_plants(builder, arguments.seed, arguments.plants)
         if arguments.plants > 0:

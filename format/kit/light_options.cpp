@@ -10,7 +10,6 @@ void add_light(CLI::App& command, LightRequest& light) {
             ->type_name("HH:MM");
     command
         .add_option("--gradients", light.gradients, "The day (light.schema.json) instead of the built-in one")
-        ->needs(time)
         ->type_name("FILE.json");
     CLI::Option* direction =
         command.add_option("--sun-direction", light.sun_direction, "Towards the sun, any length")

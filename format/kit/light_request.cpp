@@ -18,6 +18,10 @@ class Reader {
 
     // Gives the exit code.
     int read(RequestedLight& to) const {
+        if (request_.gradients && !request_.time) {
+            refuse("--gradients goes with --time");
+            return exit_usage;
+        }
         to.light.mode = request_.mode == "literal" ? RelightMode::literal : RelightMode::accurate;
         if (request_.time) {
             if (const int exit_code = read_day(to); exit_code != exit_valid)

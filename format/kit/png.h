@@ -23,6 +23,9 @@ struct Image {
         const std::size_t pixel = y * width + x;
         return &rgb[pixel * 3];
     }
+    [[nodiscard]] const std::uint8_t* at(std::size_t x, std::size_t y) const {
+        return const_cast<Image*>(this)->at(x, y);
+    }
 };
 
 // Names the part of the world that a picture from above shows: x0,y0,x1,y1 in metres.

@@ -49,7 +49,14 @@ int run_preview(const PreviewRequest& request) {
             return dot_colour(*sector, p, sky_visibility, quantity->second);
         });
     }
-    const auto image = draw(picture, request.metres_per_pixel);
+    std::optional<Underlay> under;
+    if (request.under) {
+        int exit_code = kit::exit_valid;
+        under = Underlay::read(*request.under, exit_code);
+        if (!under)
+            return exit_code;
+    }
+    const auto image = draw(picture, request.metres_per_pixel, under ? &*under : nullptr);
     if (!image)
         return kit::exit_usage;
     const std::string error = kit::write_file(request.out, kit::encode_png(*image));

@@ -29,6 +29,7 @@ struct PreviewRequest {
     std::string out;
     double metres_per_pixel = 0;  // 0: as fits the region
     std::string quantity;         // one of preview_quantities()
+    std::optional<std::string> under;
 };
 int run_preview(const PreviewRequest& request);
 [[nodiscard]] std::vector<std::string> preview_quantities();

@@ -22,7 +22,7 @@ namespace {
 // What the command line says.
 struct CommandLine {
     ValidateRequest validate;
-    PreviewRequest preview{{}, {}, 0, "relit"};
+    PreviewRequest preview{{}, {}, 0, "relit", {}};
     StripRequest strip;
     TilesRequest tiles;
     DiffRequest diff;
@@ -82,6 +82,11 @@ void add_views(CLI::App& app, CommandLine& line) {
                      "What colours the probes: " + kit::joined(preview_quantities()))
         ->check(kit::one_of(preview_quantities()))
         ->capture_default_str();
+    preview
+        ->add_option("--under",
+                     line.preview.under,
+                     "A picture to lie under the probes: what bakerd render --top makes")
+        ->type_name("FILE.png");
     preview->callback([&line] { line.run = [&line] { return run_preview(line.preview); }; });
 }
 

@@ -37,10 +37,18 @@ Float3 ground_colour(const GroundMap& ground, std::size_t x, std::size_t y) {
     return {grey, grey, grey * 1.05f};
 }
 
-void draw_background(kit::Image& image, const GroundMap& ground) {
+void draw_background(kit::Image& image,
+                     const GroundMap& ground,
+                     const MapExtent& extent,
+                     const Underlay* under) {
     const Pixel empty = encode_pixel(empty_colour);
     for (std::size_t y = 0; y < image.height; ++y) {
         for (std::size_t x = 0; x < image.width; ++x) {
+            const std::uint8_t* lying = under != nullptr ? under->at(extent.x_m(x), extent.y_m(y)) : nullptr;
+            if (lying != nullptr) {
+                put_pixel(image, x, y, {lying[0], lying[1], lying[2]});
+                continue;
+            }
             const bool has_ground = ground.at(x, y).weight > 0;
             const Pixel pixel = has_ground ? encode_pixel(ground_colour(ground, x, y)) : empty;
             put_pixel(image, x, y, pixel);
@@ -137,7 +145,7 @@ void RegionPicture::add(const Sector& sector, const DotColour& colour) {
     }
 }
 
-std::optional<kit::Image> draw(const RegionPicture& picture, double metres_per_pixel) {
+std::optional<kit::Image> draw(const RegionPicture& picture, double metres_per_pixel, const Underlay* under) {
     const MapExtent extent = measure(picture.sectors, metres_per_pixel);
     const std::size_t covered = extent.sectors_wide() * extent.sectors_high();
     if (covered > max_covered_sectors) {
@@ -147,7 +155,7 @@ std::optional<kit::Image> draw(const RegionPicture& picture, double metres_per_p
         return std::nullopt;
     }
     kit::Image image(extent.width, extent.height);
-    draw_background(image, GroundMap(extent, picture.dots));
+    draw_background(image, GroundMap(extent, picture.dots), extent, under);
     draw_sector_lines(image, extent);
     draw_dots(image, extent, picture.dots);
     return image;

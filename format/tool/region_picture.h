@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kit/png.h"
+#include "underlay.h"
 
 #include <drtv/sector.h>
 
@@ -32,8 +33,11 @@ struct RegionPicture {
     void add(const Sector& sector, const DotColour& colour);
 };
 
-// At 0 metres a pixel the longer side has about 1,600 pixels. Nothing, and a complaint, where the sectors lie
-// too far apart for one picture. REQUIRES: at least one sector.
-[[nodiscard]] std::optional<kit::Image> draw(const RegionPicture& picture, double metres_per_pixel);
+// Where there is a picture to lie under, the ground is that. At 0 metres a pixel the longer side has about
+// 1,600 pixels. Nothing, and a complaint, where the sectors lie too far apart for one picture. REQUIRES: at
+// least one sector.
+[[nodiscard]] std::optional<kit::Image> draw(const RegionPicture& picture,
+                                             double metres_per_pixel,
+                                             const Underlay* under = nullptr);
 
 }  // namespace drtv::tool

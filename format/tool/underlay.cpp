@@ -1,0 +1,46 @@
+#include "underlay.h"
+
+#include "kit/exit_code.h"
+#include "kit/files.h"
+#include "kit/number_list.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drtv::tool {
+
+std::optional<Underlay> Underlay::read(const std::string& path, int& exit_code) {
+    const kit::TextRead file = kit::read_text(path);
+    if (!file.error.empty()) {
+        kit::complain(file.error);
+        exit_code = kit::exit_unreadable;
+        return std::nullopt;
+    }
+    exit_code = kit::exit_invalid;
+    const std::span png(reinterpret_cast<const std::uint8_t*>(file.text.data()), file.text.size());
+    std::string why;
+    std::optional<kit::Image> image = kit::decode_png(png, why);
+    if (!image) {
+        kit::complain(path + ": " + why);
+        return std::nullopt;
+    }
+    const auto text = kit::png_text(png, kit::world_rectangle_key);
+    const auto world = kit::number_list(text.value_or(""), 4);
+    if (!world || !((*world)[0] < (*world)[2] && (*world)[1] < (*world)[3])) {
+        kit::complain(
+            path + " does not say which part of the world it shows; bakerd render --top makes such pictures");
+        return std::nullopt;
+    }
+    return Underlay(std::move(*image), {(*world)[0], (*world)[1], (*world)[2], (*world)[3]});
+}
+
+const std::uint8_t* Underlay::at(double x_m, double y_m) const {
+    const auto& [x0, y0, x1, y1] = world_;
+    const double x = std::floor((x_m - x0) / (x1 - x0) * static_cast<double>(image_.width));
+    const double y = std::floor((y1 - y_m) / (y1 - y0) * static_cast<double>(image_.height));
+    const bool is_inside =
+        x >= 0 && y >= 0 && x < static_cast<double>(image_.width) && y < static_cast<double>(image_.height);
+    return is_inside ? image_.at(static_cast<std::size_t>(x), static_cast<std::size_t>(y)) : nullptr;
+}
+
+}  // namespace drtv::tool

@@ -1,0 +1,30 @@
+// A picture of the map from above, to lie under probes.
+#pragma once
+
+#include "kit/png.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace drtv::tool {
+
+class Underlay {
+  public:
+    // A PNG that says which part of the world it shows, as `bakerd render --top` makes them. Nothing, and a
+    // complaint with `exit_code` set, where it is none.
+    [[nodiscard]] static std::optional<Underlay> read(const std::string& path, int& exit_code);
+
+    // The three bytes at a place in metres; null outside.
+    [[nodiscard]] const std::uint8_t* at(double x_m, double y_m) const;
+
+  private:
+    Underlay(kit::Image image, const std::array<double, 4>& world)
+        : image_(std::move(image)), world_(world) {}
+
+    kit::Image image_;
+    std::array<double, 4> world_;  // x0, y0, x1, y1
+};
+
+}  // namespace drtv::tool
