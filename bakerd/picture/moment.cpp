@@ -10,7 +10,7 @@
 namespace drtv::picture {
 namespace {
 
-constexpr float sun_cosine = 0.99999f;  // of half its disc's angle, 0.256 degrees
+constexpr float sun_cosine = 1 - 0x1.8p-17f;  // of half its disc's angle, 0.274 degrees
 
 std::vector<LightShare> shares_of(const SectorSet& set, std::span<const PointLight> lamps) {
     std::vector<LightShare> all;

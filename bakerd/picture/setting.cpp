@@ -108,13 +108,16 @@ Rectangle widened(const Rectangle& world, Size size) {
     return {middle - half, middle + half};
 }
 
+// No digits of chance, and no minus before 0.
+glm::dvec3 in_millimetres(const glm::vec3& place) {
+    return glm::round(glm::dvec3(place) * 1000.0) / 1000.0 + 0.0;
+}
+
 }  // namespace
 
 std::string place_text(const glm::vec3& place) {
-    const auto rounded = [](float metres) {
-        return std::round(static_cast<double>(metres) * 1000) / 1000 + 0.0;
-    };
-    return fmt::format("{},{},{}", rounded(place.x), rounded(place.y), rounded(place.z));
+    const glm::dvec3 rounded = in_millimetres(place);
+    return fmt::format("{},{},{}", rounded.x, rounded.y, rounded.z);
 }
 
 Expected<std::unique_ptr<const Setting>> Setting::open(const RenderRequest& request) {
@@ -243,6 +246,9 @@ Expected<void> Setting::place_camera(const map::Bounds& bounds) {
     std::optional<View> view = asked_;
     if (!view) {
         view_ = view_by_rule(scenery_->scene(), folder_.set());
+        // So that it is the same when it is said on the command line.
+        if (view_)
+            view_ = View{in_millimetres(view_->eye), in_millimetres(view_->look)};
         view = view_;
     }
     if (!view)

@@ -1,7 +1,5 @@
 #include "tests/ambient/talk_scene.h"
 
-#include "tests/ambient/scenes.h"
-
 #include <cmath>
 #include <numbers>
 
@@ -58,6 +56,8 @@ Shape sphere(const glm::vec3& middle, float radius_m) {
     return shape;
 }
 
+}  // namespace
+
 SceneSource talk_scene() {
     SceneSource scene;
     scene.add(terrain(-200, 400), green);
@@ -87,8 +87,6 @@ SceneSource talk_scene() {
     }
     return scene;
 }
-
-}  // namespace
 
 const BakedMap& baked_talk_scene() {
     static const BakedMap map = [] {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tests/ambient/baked_map.h"
+#include "tests/ambient/scenes.h"
 
 #include <glm/vec3.hpp>
 
@@ -16,6 +17,8 @@ inline constexpr glm::vec3 hut_high(50, 14, 3);
 inline constexpr float white_wall_x = 84;  // 1 m thick, along y
 inline constexpr glm::vec3 under_leaves(156, 32, 0.5f);
 inline constexpr glm::vec3 in_clearing(108, 56, 0.5f);
+
+[[nodiscard]] SceneSource talk_scene();
 
 // Sectors (0, 0) to (2, 0), with local transfer; baked once for each process.
 [[nodiscard]] const BakedMap& baked_talk_scene();

@@ -3,45 +3,16 @@ import os
 import struct
 import sys
 import unittest
-import zlib
 
+import png_file
 from tool_case import GOLDEN, GOLDEN_1_1, GOLDEN_1_3, UNREADABLE, Tool, golden, seal
-
-
-def unfiltered(data, stride):
-    """Rows of a PNG's bytes, 3 bytes a pixel (PNG specification, 9.2)."""
-    rows, above = [], bytes(stride)
-    for start in range(0, len(data), stride + 1):
-        kind, row = data[start], bytearray(data[start + 1 : start + 1 + stride])
-        for n in range(stride):
-            left, up, corner = (row[n - 3], above[n], above[n - 3]) if n >= 3 else (0, above[n], 0)
-            guess = left + up - corner
-            paeth = min((left, up, corner), key=lambda byte: abs(guess - byte))
-            row[n] = row[n] + (0, left, up, (left + up) // 2, paeth)[kind] & 255
-        rows.append(bytes(row))
-        above = rows[-1]
-    return rows
 
 
 class Preview(Tool):
     def read_png(self, path):
-        """Width, height and filtered rows; checks every chunk's CRC and the data's Adler-32."""
-        with open(path, "rb") as file:
-            data = file.read()
-        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
-        at, chunks = 8, []
-        while at < len(data):
-            (size,) = struct.unpack_from(">I", data, at)
-            body = data[at + 4 : at + 8 + size]
-            self.assertEqual(struct.unpack_from(">I", data, at + 8 + size)[0], zlib.crc32(body))
-            chunks.append((body[:4], body[4:]))
-            at += 12 + size
-        self.assertEqual([kind for kind, _ in chunks], [b"IHDR", b"IDAT", b"IEND"])
-        width, height, *rest = struct.unpack(">IIBBBBB", chunks[0][1])
-        self.assertEqual(rest, [8, 2, 0, 0, 0])
-        rows = zlib.decompress(chunks[1][1])
-        self.assertEqual(len(rows), height * (3 * width + 1))
-        return width, height, unfiltered(rows, 3 * width)
+        picture = png_file.read(path)
+        self.assertEqual(picture.chunks, ["IHDR", "IDAT", "IEND"])
+        return picture.width, picture.height, picture.rows
 
     def test_folder_becomes_a_picture(self):
         self.write("sectors/one.drtv", golden())
