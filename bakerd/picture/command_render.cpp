@@ -5,6 +5,7 @@
 #include "bakerd/picture/pick.h"
 #include "bakerd/picture/render_request.h"
 #include "bakerd/picture/setting.h"
+#include "bakerd/picture/view_arguments.h"
 
 #include "format/kit/files.h"
 #include "format/kit/progress_bar.h"

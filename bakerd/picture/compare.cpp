@@ -1,23 +1,20 @@
 #include "bakerd/picture/compare.h"
 
 #include "bakerd/bake/path.h"
+#include "bakerd/picture/compare_figures.h"
 #include "bakerd/picture/film.h"
 #include "bakerd/picture/painter.h"
 #include "bakerd/picture/path_light.h"
 #include "bakerd/picture/probe_mix.h"
 #include "bakerd/trace/device.h"
 #include "format/kit/progress_bar.h"
-#include "format/kit/srgb.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
-#include <string_view>
 #include <vector>
 
 namespace drtv::picture {
@@ -27,9 +24,6 @@ constexpr std::uint32_t probe_paths = 4096;
 // Of the pixels along each axis that are asked for the true colours at their own place.
 constexpr std::size_t place_step = 4;
 
-constexpr std::array<Show, 5> parts = {
-    Show::sky_direct, Show::sky_bounce, Show::sun_bounce, Show::static_light, Show::local};
-
 // Of two independent guesses at the truth: their noise has no part in the mean of the product.
 struct Truth {
     PathParts first, second;
@@ -38,54 +32,6 @@ struct Truth {
         return (picture::part_of(first, show) + picture::part_of(second, show)) / 2.0f;
     }
 };
-
-struct Sum {
-    double found = 0, truth = 0, squares = 0;
-    std::size_t count = 0;
-
-    void add(const glm::vec3& first,
-             const glm::vec3& second,
-             const glm::vec3& truth1,
-             const glm::vec3& truth2) {
-        for (glm::length_t c = 0; c < 3; ++c) {
-            found += static_cast<double>(first[c] + second[c]) / 2;
-            truth += static_cast<double>(truth1[c] + truth2[c]) / 2;
-            squares += static_cast<double>(first[c] - truth1[c]) * static_cast<double>(second[c] - truth2[c]);
-        }
-        count += 3;
-    }
-    void add(const Sum& other) {
-        found += other.found;
-        truth += other.truth;
-        squares += other.squares;
-        count += other.count;
-    }
-};
-
-// By row of the picture, so that they add up in one order.
-struct Figures {
-    std::array<Sum, parts.size()> by_part;
-    Sum all;
-    Sum storage;        // what the files hold beside true colours at the same probes
-    Sum interpolation;  // these beside true colours at the place itself
-    Sum shading;        // and these, by four weights, beside the truth
-
-    void add(const Figures& other) {
-        for (std::size_t n = 0; n < parts.size(); ++n)
-            by_part[n].add(other.by_part[n]);
-        all.add(other.all);
-        storage.add(other.storage);
-        interpolation.add(other.interpolation);
-        shading.add(other.shading);
-    }
-};
-
-BasisColours colours_of(const PathBasis& basis, Show show) {
-    BasisColours colours{};
-    for (std::size_t b = 0; b < basis_count; ++b)
-        colours[b] = as_float3(part_of(basis[b], show));
-    return clamped(colours);
-}
 
 class Comparing {
   public:
@@ -101,17 +47,17 @@ class Comparing {
 
     Comparison run() {
         find_true_colours();
-        std::vector<Figures> rows(size_.height);
+        std::vector<CompareFigures> rows(size_.height);
         std::atomic<std::size_t> done = 0;
         for_each(size_.height, [&](std::size_t y) {
             for (std::size_t x = 0; x < size_.width; ++x)
                 compare(x, y, rows[y]);
             bar_.show(++done);
         });
-        Figures figures;
-        for (const Figures& row : rows)
+        CompareFigures figures;
+        for (const CompareFigures& row : rows)
             figures.add(row);
-        return {std::move(picture_), table(figures)};
+        return {std::move(picture_), table_of(figures)};
     }
 
   private:
@@ -191,7 +137,7 @@ class Comparing {
         return as_vec(shade_ambient(moment_.light().mode, colours, as_float3(normal)));
     }
 
-    void compare(std::size_t x, std::size_t y, Figures& figures) {
+    void compare(std::size_t x, std::size_t y, CompareFigures& figures) {
         const auto point = point_at(x, y);
         std::array<glm::vec3, 3> light{};
         if (!point) {
@@ -200,19 +146,15 @@ class Comparing {
         } else if (!point->surface.absorbs) {
             light = lights_of(*point, x, y, figures);
         }
-        for (std::size_t n = 0; n < light.size(); ++n) {
-            const glm::vec3 linear = filmic(light[n] * exposure_);
-            std::uint8_t* pixel = picture_.at(n * size_.width + x, y);
-            for (glm::length_t c = 0; c < 3; ++c)
-                pixel[c] = kit::encode_srgb(linear[c]);
-        }
+        for (std::size_t n = 0; n < light.size(); ++n)
+            put_pixel(picture_, n * size_.width + x, y, filmic(light[n] * exposure_));
     }
 
     // Relit, true, and with true colours.
     std::array<glm::vec3, 3> lights_of(const SurfacePoint& point,
                                        std::size_t x,
                                        std::size_t y,
-                                       Figures& figures) {
+                                       CompareFigures& figures) {
         const glm::vec3& normal = point.hit.normal;
         const std::optional<glm::vec3> start = bake::before_surface(point.ray, point.hit);
         if (!start)
@@ -251,13 +193,16 @@ class Comparing {
         light[2] += through * with_true_colours(point, normal);
     }
 
-    void note(Figures& figures, const Ambient& ambient, const Truth& truth, const glm::vec3& by_truth) const {
-        for (std::size_t n = 0; n < parts.size(); ++n) {
-            const glm::vec3 found = picture::part_of(ambient, parts[n]);
+    void note(CompareFigures& figures,
+              const Ambient& ambient,
+              const Truth& truth,
+              const glm::vec3& by_truth) const {
+        for (std::size_t n = 0; n < compared_parts.size(); ++n) {
+            const glm::vec3 found = picture::part_of(ambient, compared_parts[n]);
             figures.by_part[n].add(found,
                                    found,
-                                   picture::part_of(truth.first, parts[n]),
-                                   picture::part_of(truth.second, parts[n]));
+                                   picture::part_of(truth.first, compared_parts[n]),
+                                   picture::part_of(truth.second, compared_parts[n]));
         }
         const glm::vec3 found = picture::part_of(ambient, shown());
         figures.all.add(
@@ -265,7 +210,7 @@ class Comparing {
         figures.storage.add(found, found, by_truth, by_truth);
     }
 
-    void note_place(Figures& figures,
+    void note_place(CompareFigures& figures,
                     const glm::vec3& place,
                     const glm::vec3& normal,
                     const Truth& truth,
@@ -280,44 +225,6 @@ class Comparing {
         figures.shading.add(
             first, second, picture::part_of(truth.first, shown()), picture::part_of(truth.second, shown()));
     }
-
-    [[nodiscard]] std::string table(const Figures& figures) const {
-        const double mean =
-            figures.all.truth / static_cast<double>(std::max<std::size_t>(figures.all.count, 1));
-        std::string text = "ambient light of the surfaces in sight, beside path tracing\n";
-        text += fmt::format("{:<16}{:>9}{:>9}{:>9}\n", "part", "share %", "bias %", "rms %");
-        for (std::size_t n = 0; n < parts.size(); ++n) {
-            const auto name = std::ranges::find(show_names(), parts[n], &ShowName::show)->name;
-            text += row(name, figures.by_part[n], mean);
-        }
-        text += row("all", figures.all, mean);
-        text += "causes, each beside the next nearer to the truth\n";
-        text += cause("storage", figures.storage, mean);
-        text += cause("interpolation", figures.interpolation, mean);
-        text += cause("shading", figures.shading, mean);
-        return text;
-    }
-
-    // Shares and errors of the mean of all light.
-    static std::string row(std::string_view name, const Sum& sum, double mean) {
-        return fmt::format("{:<16}{:>9.1f}{}", name, percent(sum.truth, sum, mean), errors(sum, mean));
-    }
-    static std::string cause(std::string_view name, const Sum& sum, double mean) {
-        return fmt::format("{:<16}{:>9}{}", name, "", errors(sum, mean));
-    }
-    static std::string errors(const Sum& sum, double mean) {
-        const double squares =
-            std::max(sum.squares / static_cast<double>(std::max<std::size_t>(sum.count, 1)), 0.0);
-        return fmt::format("{:>9.1f}{:>9.1f}\n",
-                           percent(sum.found - sum.truth, sum, mean),
-                           100 * std::sqrt(squares) / std::max(mean, least_mean));
-    }
-    static double percent(double total, const Sum& sum, double mean) {
-        const auto count = static_cast<double>(std::max<std::size_t>(sum.count, 1));
-        return 100 * total / count / std::max(mean, least_mean);
-    }
-
-    static constexpr double least_mean = 1e-30;
 
     const Setting& setting_;
     const Moment& moment_;

@@ -3,7 +3,6 @@
 #include "bakerd/map/colour.h"
 #include "bakerd/picture/film.h"
 #include "bakerd/trace/device.h"
-#include "format/kit/srgb.h"
 
 #include <tbb/parallel_for.h>
 
@@ -35,7 +34,7 @@ class Drawing {
     kit::Image run() {
         for_each_row([&](std::size_t y) {
             for (std::size_t x = 0; x < size_.width; ++x)
-                put(image_, x, y, shown(middle(x, y)));
+                put_pixel(image_, x, y, shown(middle(x, y)));
         });
         if (!painter_.is_light())
             return std::move(image_);
@@ -43,7 +42,7 @@ class Drawing {
         for_each_row([&](std::size_t y) {
             for (std::size_t x = 0; x < size_.width; ++x) {
                 if (is_edge(x, y))
-                    put(smooth, x, y, smoothed(x, y));
+                    put_pixel(smooth, x, y, smoothed(x, y));
             }
         });
         return smooth;
@@ -74,12 +73,6 @@ class Drawing {
         for (const glm::vec2& at : inside_pixel)
             sum += shown(middle(x, y) - 0.5f + at);
         return sum / static_cast<float>(inside_pixel.size());
-    }
-
-    static void put(kit::Image& image, std::size_t x, std::size_t y, const glm::vec3& linear) {
-        std::uint8_t* pixel = image.at(x, y);
-        for (glm::length_t c = 0; c < 3; ++c)
-            pixel[c] = kit::encode_srgb(linear[c]);
     }
 
     bool is_edge(std::size_t x, std::size_t y) {

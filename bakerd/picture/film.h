@@ -1,7 +1,11 @@
 // From radiance to the bytes of a picture.
 #pragma once
 
+#include "format/kit/png.h"
+
 #include <glm/vec3.hpp>
+
+#include <cstddef>
 
 namespace drtv::picture {
 
@@ -11,6 +15,9 @@ namespace drtv::picture {
 // Linear, 0 to 1, channel by channel: a curve that keeps dark parts and rolls off towards white (K.
 // Narkowicz, "ACES Filmic Tone Mapping Curve", 2016: a fit of the Academy's). Below 0 counts as 0.
 [[nodiscard]] glm::vec3 filmic(const glm::vec3& exposed);
+
+// Writes a pixel of linear colour.
+void put_pixel(kit::Image& image, std::size_t x, std::size_t y, const glm::vec3& linear);
 
 // The EV at which surfaces of this mean (mean_luminance in draw.h) come out well; in quarters, so that it can
 // be said again on the command line.

@@ -94,6 +94,13 @@ void Moment::add_blend(BasisColours& sum, const ProbeBlend& blend, const Double3
         add(sum, open_sky_, share * blend.fallback * set_.sky_factor(asked));
 }
 
+std::optional<Incidence> Moment::sun() const {
+    const Sun& sun = light().sun;
+    if (!(sun.direction[2] > 0))
+        return std::nullopt;
+    return Incidence{glm::normalize(as_vec(sun.direction)), as_vec(sun.irradiance), std::nullopt};
+}
+
 glm::vec3 Moment::factor_of(std::string_view group) const {
     if (group.empty())
         return as_vec(light().static_colour);
@@ -115,11 +122,10 @@ glm::vec3 Moment::sky(const glm::vec3& direction, bool with_sun) const {
         for (std::size_t i = 0; i < sh_count; ++i)
             radiance[c] += light().sky[static_cast<std::size_t>(c)][i] * harmonics[i];
     }
-    const Sun& sun = light().sun;
-    if (with_sun && sun.direction[2] > 0 &&
-        glm::dot(direction, glm::normalize(as_vec(sun.direction))) > sun_cosine) {
+    const std::optional<Incidence> disc = with_sun ? sun() : std::nullopt;
+    if (disc && glm::dot(direction, disc->direction) > sun_cosine) {
         constexpr float solid_angle = 2 * std::numbers::pi_v<float> * (1 - sun_cosine);
-        radiance += as_vec(sun.irradiance) / solid_angle;
+        radiance += disc->irradiance / solid_angle;
     }
     return glm::max(radiance, glm::vec3(0));
 }

@@ -1,6 +1,8 @@
 // One moment's light: the sectors relit by it, as a shader finds them, and the light that comes straight.
 #pragma once
 
+#include "bakerd/picture/incidence.h"
+#include "bakerd/picture/vectors.h"
 #include "format/kit/light_request.h"
 #include "format/kit/relit_volume.h"
 
@@ -15,16 +17,6 @@
 #include <vector>
 
 namespace drtv::picture {
-
-[[nodiscard]] inline glm::vec3 as_vec(const Float3& v) {
-    return {v[0], v[1], v[2]};
-}
-[[nodiscard]] inline Float3 as_float3(const glm::vec3& v) {
-    return {v.x, v.y, v.z};
-}
-[[nodiscard]] inline Double3 as_place(const glm::vec3& v) {
-    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
 
 enum class By : std::uint8_t { nearest, trilinear, volume };
 
@@ -56,6 +48,8 @@ class Moment {
     // Null unless the choice is By::volume.
     [[nodiscard]] const Volume* volume() const { return volume_; }
 
+    // Nothing where it is not above the horizon.
+    [[nodiscard]] std::optional<Incidence> sun() const;
     // What the map's own lights of a group (empty: of none) are multiplied with.
     [[nodiscard]] glm::vec3 factor_of(std::string_view group) const;
 

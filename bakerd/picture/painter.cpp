@@ -61,14 +61,10 @@ glm::vec3 part_of(const Ambient& ambient, Show show) {
 glm::vec3 direct_light(const Scenery& scenery, const Moment& moment, const SurfacePoint& point) {
     const trace::Scene& scene = scenery.scene();
     glm::vec3 light(0);
-    const Sun& sun = moment.light().sun;
-    if (sun.direction[2] > 0)
-        light += scattered(
-            scene, point, {glm::normalize(as_vec(sun.direction)), as_vec(sun.irradiance), std::nullopt});
-    for (const PointLight& lamp : moment.lamps()) {
-        const glm::vec3 place(lamp.position[0], lamp.position[1], lamp.position[2]);
-        light += scattered(scene, point, incidence(place, as_vec(lamp.intensity), point.at));
-    }
+    if (const std::optional<Incidence> sun = moment.sun())
+        light += scattered(scene, point, *sun);
+    for (const PointLight& lamp : moment.lamps())
+        light += scattered(scene, point, incidence(lamp, point.at));
     if (point.surface.emission != glm::vec3(0)) {
         const bake::StaticLights& lights = scenery.lights();
         const std::size_t set = lights.set_of(scene.object_index(point.hit.instance));

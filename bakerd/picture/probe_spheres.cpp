@@ -1,5 +1,7 @@
 #include "bakerd/picture/probe_spheres.h"
 
+#include "format/kit/sector_folder.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -18,12 +20,10 @@ ProbeSpheres::ProbeSpheres(const Moment& moment, const Camera& camera)
     : mode_(moment.light().mode),
       tiles_wide_(camera.size().width / tile_pixels + 1),
       tiles_(tiles_wide_ * (camera.size().height / tile_pixels + 1)) {
-    const SectorSet& set = moment.set();
-    for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
-        const LoadedSector* sector = set.at(slot);
-        for (std::size_t p = 0; sector != nullptr && p < sector->view.probe_count; ++p)
-            add(*sector, p, moment, camera);
-    }
+    kit::for_each_sector(moment.set(), [&](const LoadedSector& sector) {
+        for (std::size_t p = 0; p < sector.view.probe_count; ++p)
+            add(sector, p, moment, camera);
+    });
 }
 
 void ProbeSpheres::add(const LoadedSector& sector,

@@ -1,15 +1,15 @@
 #include "bakerd/picture/setting.h"
 
+#include "bakerd/picture/ground_probes.h"
+#include "bakerd/picture/view_arguments.h"
 #include "bakerd/trace/device.h"
 #include "format/kit/files.h"
-#include "format/kit/number_list.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace drtv::picture {
@@ -17,68 +17,7 @@ namespace {
 
 // Sectors so far from the camera are loaded; beyond, the open sky lights.
 constexpr float sectors_m = 2048;
-constexpr std::size_t max_side = 16384;  // pixels
-constexpr std::size_t max_pixels = std::size_t{64} << 20;
 constexpr float over_the_top_m = 1;
-
-Expected<Size> read_size(const std::string& text) {
-    Size size;
-    const char* const end = text.data() + text.size();
-    const auto width = std::from_chars(text.data(), end, size.width);
-    const bool has_x = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
-    const auto height = has_x ? std::from_chars(width.ptr + 1, end, size.height) : width;
-    const bool is_size = has_x && height.ec == std::errc() && height.ptr == end;
-    if (!is_size || size.width < 1 || size.height < 1 || size.width > max_side || size.height > max_side ||
-        size.width * size.height > max_pixels)
-        return failed(
-            kit::exit_usage,
-            fmt::format("render: --size takes WIDTHxHEIGHT, each 1 to {}, together at most 64 million "
-                        "pixels, not \"{}\"",
-                        max_side,
-                        text));
-    return size;
-}
-
-Expected<glm::vec3> read_place(const std::string& text, const char* option) {
-    const auto numbers = kit::number_list(text, 3);
-    const bool in_world =
-        numbers && std::ranges::all_of(*numbers, [](double n) { return std::abs(n) <= 2e6; });
-    if (!in_world)
-        return failed(kit::exit_usage,
-                      fmt::format("render: {} takes x,y,z in metres, not \"{}\"", option, text));
-    return glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
-}
-
-Expected<std::optional<View>> read_view(const RenderRequest& request) {
-    if (!request.camera || !request.look)
-        return std::optional<View>();
-    const auto eye = read_place(*request.camera, "--camera");
-    if (!eye)
-        return tl::unexpected(eye.error());
-    const auto look = read_place(*request.look, "--look");
-    if (!look)
-        return tl::unexpected(look.error());
-    if (*eye == *look)
-        return failed(kit::exit_usage, "render: --look is the camera's own place");
-    return std::optional<View>({*eye, *look});
-}
-
-Expected<std::optional<Rectangle>> read_region(const std::optional<std::string>& text) {
-    if (!text)
-        return std::optional<Rectangle>();
-    const auto n = kit::number_list(*text, 4);
-    if (!n || !((*n)[0] < (*n)[2] && (*n)[1] < (*n)[3]))
-        return failed(kit::exit_usage, fmt::format("render: --region takes X0,Y0,X1,Y1, not \"{}\"", *text));
-    return std::optional<Rectangle>({glm::vec2((*n)[0], (*n)[1]), glm::vec2((*n)[2], (*n)[3])});
-}
-
-template <class Use>
-void for_each_sector(const SectorSet& set, const Use& use) {
-    for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
-        if (const LoadedSector* sector = set.at(slot))
-            use(*sector);
-    }
-}
 
 Rectangle square_of(const LoadedSector& sector) {
     const auto side = static_cast<float>(sector_size_m);
@@ -88,7 +27,7 @@ Rectangle square_of(const LoadedSector& sector) {
 
 Rectangle extent_of(const SectorSet& set) {
     Rectangle extent{glm::vec2(INFINITY), glm::vec2(-INFINITY)};
-    for_each_sector(set, [&](const LoadedSector& sector) {
+    kit::for_each_sector(set, [&](const LoadedSector& sector) {
         const Rectangle square = square_of(sector);
         extent = {glm::min(extent.low, square.low), glm::max(extent.high, square.high)};
     });
@@ -108,17 +47,7 @@ Rectangle widened(const Rectangle& world, Size size) {
     return {middle - half, middle + half};
 }
 
-// No digits of chance, and no minus before 0.
-glm::dvec3 in_millimetres(const glm::vec3& place) {
-    return glm::round(glm::dvec3(place) * 1000.0) / 1000.0 + 0.0;
-}
-
 }  // namespace
-
-std::string place_text(const glm::vec3& place) {
-    const glm::dvec3 rounded = in_millimetres(place);
-    return fmt::format("{},{},{}", rounded.x, rounded.y, rounded.z);
-}
 
 Expected<std::unique_ptr<const Setting>> Setting::open(const RenderRequest& request) {
     std::unique_ptr<Setting> setting(new Setting(request));
@@ -192,7 +121,7 @@ Expected<void> Setting::load_sectors(const map::Bounds& bounds) {
     const Rectangle map{bounds.low, bounds.high};
     std::size_t count = 0;
     bool fits = false;
-    for_each_sector(folder_.set(), [&](const LoadedSector& sector) {
+    kit::for_each_sector(folder_.set(), [&](const LoadedSector& sector) {
         ++count;
         fits = fits || overlap(square_of(sector), map);
     });
@@ -285,12 +214,7 @@ void Setting::warn_of_other_map() const {
     constexpr float ground_m = 1.5f;
     constexpr std::size_t most_asked = 256;
     std::vector<glm::vec3> probes;
-    for_each_sector(folder_.set(), [&](const LoadedSector& sector) {
-        for (std::size_t p = 0; p < sector.view.probe_count; ++p) {
-            if (sector.view.positions[p].kind == ProbeKind::ground)
-                probes.push_back(as_vec(position_m(sector.view, p)));
-        }
-    });
+    for_each_ground_probe(folder_.set(), [&](const glm::vec3& place) { probes.push_back(place); });
     const std::size_t step = probes.size() / most_asked + 1;
     std::size_t asked = 0, over_nothing = 0;
     for (std::size_t n = 0; n < probes.size(); n += step) {

@@ -16,9 +16,6 @@
 
 namespace drtv::picture {
 
-// "1,2.5,3", in millimetres.
-[[nodiscard]] std::string place_text(const glm::vec3& place);
-
 class Setting {
   public:
     // Fails with a sentence where something does not fit together.

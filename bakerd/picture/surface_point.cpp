@@ -2,6 +2,7 @@
 
 #include "bakerd/bake/lights.h"
 #include "bakerd/bake/path.h"
+#include "bakerd/picture/vectors.h"
 
 #include <glm/geometric.hpp>
 
@@ -25,13 +26,14 @@ std::optional<SurfacePoint> surface_on(const trace::Scene& scene,
     return point;
 }
 
-Incidence incidence(const glm::vec3& lamp, const glm::vec3& intensity, const glm::vec3& at) {
-    const bake::PointLight light{.position = lamp, .intensity = intensity};
-    const glm::vec3 way = lamp - at;
+Incidence incidence(const PointLight& lamp, const glm::vec3& at) {
+    const glm::vec3 place(lamp.position[0], lamp.position[1], lamp.position[2]);
+    const bake::PointLight light{.position = place, .intensity = as_vec(lamp.intensity)};
+    const glm::vec3 way = place - at;
     const float distance_m = glm::length(way);
     if (!(distance_m > 0))
         return {};
-    return {way / distance_m, light.irradiance_at(at), lamp};
+    return {way / distance_m, light.irradiance_at(at), place};
 }
 
 glm::vec3 scattered(const trace::Scene& scene, const SurfacePoint& point, const Incidence& light) {

@@ -2,7 +2,10 @@
 #pragma once
 
 #include "bakerd/picture/camera.h"
+#include "bakerd/picture/incidence.h"
 #include "bakerd/trace/scene.h"
+
+#include <drtv/local_lights.h>
 
 #include <glm/vec3.hpp>
 
@@ -23,15 +26,7 @@ struct SurfacePoint {
                                                      const Camera& camera,
                                                      const trace::Ray& ray);
 
-// A light that shines on a surface.
-struct Incidence {
-    glm::vec3 direction{};           // towards it, unit
-    glm::vec3 irradiance{};          // of a surface that faces it
-    std::optional<glm::vec3> place;  // none of the sun
-};
-
-// Of a lamp of so many W/sr.
-[[nodiscard]] Incidence incidence(const glm::vec3& lamp, const glm::vec3& intensity, const glm::vec3& at);
+[[nodiscard]] Incidence incidence(const PointLight& lamp, const glm::vec3& at);
 
 // What the surface sends back of it towards the ray's origin, where nothing hides the light.
 [[nodiscard]] glm::vec3 scattered(const trace::Scene& scene,

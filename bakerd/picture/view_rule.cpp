@@ -2,7 +2,7 @@
 
 #include "bakerd/map/cos_sin.h"
 #include "bakerd/picture/camera.h"
-#include "bakerd/picture/moment.h"
+#include "bakerd/picture/ground_probes.h"
 #include "bakerd/trace/device.h"
 
 #include <tbb/parallel_for.h>
@@ -29,13 +29,8 @@ constexpr float fov_deg = 60;
 
 std::vector<glm::vec3> eyes_of(const SectorSet& set) {
     std::vector<glm::vec3> eyes;
-    for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
-        const LoadedSector* sector = set.at(slot);
-        for (std::size_t p = 0; sector != nullptr && p < sector->view.probe_count; ++p) {
-            if (sector->view.positions[p].kind == ProbeKind::ground)
-                eyes.push_back(as_vec(position_m(sector->view, p)) + glm::vec3(0, 0, eye_m - probe_m));
-        }
-    }
+    for_each_ground_probe(
+        set, [&](const glm::vec3& place) { eyes.push_back(place + glm::vec3(0, 0, eye_m - probe_m)); });
     const std::size_t count = std::min(most_eyes, eyes.size());
     std::vector<glm::vec3> chosen;
     for (std::size_t n = 0; n < count; ++n)

@@ -1,5 +1,7 @@
 #include "relit_volume.h"
 
+#include "sector_folder.h"
+
 #include <algorithm>
 
 namespace drtv::kit {
@@ -15,13 +17,10 @@ RelitVolume::RelitVolume(const SectorSet& set,
       volume_(volume_memory_, settings, set.limits()) {
     relit_.set_light(Shown::now, light);
     float largest = relit_.largest_fallback();
-    for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
-        const LoadedSector* sector = set.at(slot);
-        if (sector == nullptr)
-            continue;
-        relit_.relight(Shown::now, *sector, light, lamps);
-        largest = std::max(largest, relit_.largest(*sector));
-    }
+    for_each_sector(set, [&](const LoadedSector& sector) {
+        relit_.relight(Shown::now, sector, light, lamps);
+        largest = std::max(largest, relit_.largest(sector));
+    });
     volume_.set_scale(suggest_scale(largest, 0));
 }
 

@@ -11,6 +11,15 @@
 
 namespace drtv::kit {
 
+// Calls use(sector) for each that is loaded.
+template <class Use>
+void for_each_sector(const SectorSet& set, const Use& use) {
+    for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
+        if (const LoadedSector* sector = set.at(slot))
+            use(*sector);
+    }
+}
+
 // Half open.
 struct WorldSquare {
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;

@@ -136,11 +136,9 @@ bool read_camera(const RelightRequest& request, std::optional<Double3>& camera) 
 
 template <class Has>
 bool any_sector(const SectorSet& set, const Has& has) {
-    for (std::uint32_t slot = 0; slot < set.limits().sectors; ++slot) {
-        if (const LoadedSector* sector = set.at(slot); sector != nullptr && has(sector->view))
-            return true;
-    }
-    return false;
+    bool any = false;
+    kit::for_each_sector(set, [&](const LoadedSector& sector) { any = any || has(sector.view); });
+    return any;
 }
 
 // Light that no loaded sector takes is hardly meant; others may, so it is no error.

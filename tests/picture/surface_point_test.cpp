@@ -64,17 +64,17 @@ TEST(SurfacePoint, SunLightsByItsHeightAndNotBelowARoof) {
 TEST(SurfacePoint, LampLightsByTheInverseSquareAndHasShadows) {
     const trace::FloatMode float_mode;
     const auto scenery = ground_and_roof();
-    const glm::vec3 intensity(90, 45, 9);
-    const glm::vec3 lamp(3, 0, 4);
+    constexpr Float3 intensity = {90, 45, 9};
     const SurfacePoint point = below(*scenery, {0, 0, 0});
     // 5 m away, at a cosine of 4/5.
-    expect_near(scattered(scenery->scene(), point, picture::incidence(lamp, intensity, point.at)),
-                albedo * intensity * (0.8f / 25 / pi));
+    expect_near(scattered(scenery->scene(), point, picture::incidence({{3, 0, 4}, intensity}, point.at)),
+                albedo * picture::as_vec(intensity) * (0.8f / 25 / pi));
     const SurfacePoint hidden = below(*scenery, {15, 0, 0});
-    EXPECT_EQ(scattered(scenery->scene(), hidden, picture::incidence({15, 0, 9}, intensity, hidden.at)),
+    EXPECT_EQ(scattered(scenery->scene(), hidden, picture::incidence({{15, 0, 9}, intensity}, hidden.at)),
               glm::vec3(0));
     // A lamp in the place itself is none.
-    EXPECT_EQ(picture::incidence(point.at, intensity, point.at).irradiance, glm::vec3(0));
+    EXPECT_EQ(picture::incidence({picture::as_place(point.at), intensity}, point.at).irradiance,
+              glm::vec3(0));
 }
 
 TEST(SurfacePoint, LeavesLetLightThrough) {

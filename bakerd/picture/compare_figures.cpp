@@ -1,0 +1,80 @@
+#include "bakerd/picture/compare_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace drtv::picture {
+namespace {
+
+double count_of(const ErrorSum& sum) {
+    return static_cast<double>(std::max<std::size_t>(sum.count, 1));
+}
+
+// `percent`: by which a mean becomes percent of the mean of all light.
+std::string errors(const ErrorSum& sum, double percent) {
+    const double count = count_of(sum);
+    return fmt::format("{:>9.1f}{:>9.1f}\n",
+                       percent * (sum.found - sum.truth) / count,
+                       percent * std::sqrt(std::max(sum.squares / count, 0.0)));
+}
+
+std::string row(std::string_view name, const ErrorSum& sum, double percent) {
+    return fmt::format("{:<16}{:>9.1f}{}", name, percent * sum.truth / count_of(sum), errors(sum, percent));
+}
+
+std::string cause(std::string_view name, const ErrorSum& sum, double percent) {
+    return fmt::format("{:<16}{:>9}{}", name, "", errors(sum, percent));
+}
+
+}  // namespace
+
+void ErrorSum::add(const glm::vec3& first,
+                   const glm::vec3& second,
+                   const glm::vec3& truth_first,
+                   const glm::vec3& truth_second) {
+    for (glm::length_t c = 0; c < 3; ++c) {
+        found += static_cast<double>(first[c] + second[c]) / 2;
+        truth += static_cast<double>(truth_first[c] + truth_second[c]) / 2;
+        squares +=
+            static_cast<double>(first[c] - truth_first[c]) * static_cast<double>(second[c] - truth_second[c]);
+    }
+    count += 3;
+}
+
+void ErrorSum::add(const ErrorSum& other) {
+    found += other.found;
+    truth += other.truth;
+    squares += other.squares;
+    count += other.count;
+}
+
+void CompareFigures::add(const CompareFigures& other) {
+    for (std::size_t n = 0; n < by_part.size(); ++n)
+        by_part[n].add(other.by_part[n]);
+    all.add(other.all);
+    storage.add(other.storage);
+    interpolation.add(other.interpolation);
+    shading.add(other.shading);
+}
+
+std::string table_of(const CompareFigures& figures) {
+    constexpr double least_mean = 1e-30;
+    const double percent = 100 / std::max(figures.all.truth / count_of(figures.all), least_mean);
+    std::string text = "ambient light of the surfaces in sight, beside path tracing\n";
+    text += fmt::format("{:<16}{:>9}{:>9}{:>9}\n", "part", "share %", "bias %", "rms %");
+    for (std::size_t n = 0; n < compared_parts.size(); ++n) {
+        const auto name = std::ranges::find(show_names(), compared_parts[n], &ShowName::show)->name;
+        text += row(name, figures.by_part[n], percent);
+    }
+    text += row("all", figures.all, percent);
+    text += "causes, each beside the next nearer to the truth\n";
+    text += cause("storage", figures.storage, percent);
+    text += cause("interpolation", figures.interpolation, percent);
+    text += cause("shading", figures.shading, percent);
+    return text;
+}
+
+}  // namespace drtv::picture

@@ -1,0 +1,42 @@
+// How far off light is, added up over a picture.
+#pragma once
+
+#include "bakerd/picture/show.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace drtv::picture {
+
+inline constexpr std::array<Show, 5> compared_parts = {
+    Show::sky_direct, Show::sky_bounce, Show::sun_bounce, Show::static_light, Show::local};
+
+struct ErrorSum {
+    double found = 0, truth = 0, squares = 0;
+    std::size_t count = 0;  // of channels
+
+    // Two independent guesses at each: the noise of both has no part in the mean of the product of errors.
+    void add(const glm::vec3& first,
+             const glm::vec3& second,
+             const glm::vec3& truth_first,
+             const glm::vec3& truth_second);
+    void add(const ErrorSum& other);
+};
+
+struct CompareFigures {
+    std::array<ErrorSum, compared_parts.size()> by_part;
+    ErrorSum all;
+    ErrorSum storage;        // what the files hold beside true colours at the same probes
+    ErrorSum interpolation;  // these beside true colours at the place itself
+    ErrorSum shading;        // and these, by four weights, beside the truth
+
+    void add(const CompareFigures& other);
+};
+
+// Lines of text: shares of the light, bias and root mean square, in percent of the mean of all light.
+[[nodiscard]] std::string table_of(const CompareFigures& figures);
+
+}  // namespace drtv::picture

@@ -1,0 +1,81 @@
+#include "bakerd/picture/view_arguments.h"
+
+#include "format/kit/number_list.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace drtv::picture {
+namespace {
+
+constexpr std::size_t max_side = 16384;  // pixels
+constexpr std::size_t max_pixels = std::size_t{64} << 20;
+
+Expected<glm::vec3> read_place(const std::string& text, const char* option) {
+    const auto numbers = kit::number_list(text, 3);
+    const bool in_world =
+        numbers && std::ranges::all_of(*numbers, [](double n) { return std::abs(n) <= 2e6; });
+    if (!in_world)
+        return failed(kit::exit_usage,
+                      fmt::format("render: {} takes x,y,z in metres, not \"{}\"", option, text));
+    return glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+}
+
+}  // namespace
+
+Expected<Size> read_size(const std::string& text) {
+    Size size;
+    const char* const end = text.data() + text.size();
+    const auto width = std::from_chars(text.data(), end, size.width);
+    const bool has_x = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+    const auto height = has_x ? std::from_chars(width.ptr + 1, end, size.height) : width;
+    const bool is_size = has_x && height.ec == std::errc() && height.ptr == end;
+    if (!is_size || size.width < 1 || size.height < 1 || size.width > max_side || size.height > max_side ||
+        size.width * size.height > max_pixels)
+        return failed(
+            kit::exit_usage,
+            fmt::format("render: --size takes WIDTHxHEIGHT, each 1 to {}, together at most 64 million "
+                        "pixels, not \"{}\"",
+                        max_side,
+                        text));
+    return size;
+}
+
+Expected<std::optional<View>> read_view(const RenderRequest& request) {
+    if (!request.camera || !request.look)
+        return std::optional<View>();
+    const auto eye = read_place(*request.camera, "--camera");
+    if (!eye)
+        return tl::unexpected(eye.error());
+    const auto look = read_place(*request.look, "--look");
+    if (!look)
+        return tl::unexpected(look.error());
+    if (*eye == *look)
+        return failed(kit::exit_usage, "render: --look is the camera's own place");
+    return std::optional<View>({*eye, *look});
+}
+
+Expected<std::optional<Rectangle>> read_region(const std::optional<std::string>& text) {
+    if (!text)
+        return std::optional<Rectangle>();
+    const auto n = kit::number_list(*text, 4);
+    if (!n || !((*n)[0] < (*n)[2] && (*n)[1] < (*n)[3]))
+        return failed(kit::exit_usage, fmt::format("render: --region takes X0,Y0,X1,Y1, not \"{}\"", *text));
+    return std::optional<Rectangle>({glm::vec2((*n)[0], (*n)[1]), glm::vec2((*n)[2], (*n)[3])});
+}
+
+// No minus before 0.
+glm::dvec3 in_millimetres(const glm::vec3& place) {
+    return glm::round(glm::dvec3(place) * 1000.0) / 1000.0 + 0.0;
+}
+
+std::string place_text(const glm::vec3& place) {
+    const glm::dvec3 rounded = in_millimetres(place);
+    return fmt::format("{},{},{}", rounded.x, rounded.y, rounded.z);
+}
+
+}  // namespace drtv::picture
