@@ -19,7 +19,8 @@ case $preset in
   *) echo "demo.sh: the preset '$preset' is unknown: there are draft, console and pc" >&2; exit 2 ;;
 esac
 build_dir=$source_dir/build/release
-say() { printf '\n== %s\n' "$*" >&2; }
+# shellcheck source=deploy/daemon.sh
+. "$source_dir/deploy/daemon.sh"
 
 say "Packages"
 "$source_dir/deploy/install_packages.sh"
@@ -36,19 +37,7 @@ say "Map: Maunga Whau as an island"
 PYTHONDONTWRITEBYTECODE=1 python3 "$source_dir/deploy/demo_map/make_demo_map.py" --out "$demo_dir/map" --stats
 
 say "Daemon"
-# Port 0: the daemon takes a free one and says which.
-"$bin/bakerd" serve --data "$demo_dir/data" --listen 127.0.0.1:0 2>"$demo_dir/bakerd.log" &
-daemon=$!
-trap 'kill "$daemon" 2>/dev/null; wait "$daemon" 2>/dev/null || true' EXIT
-address=
-for _ in $(seq 100); do
-  address=$(sed -n 's/.*bakerd listens on \([^,]*\),.*/\1/p' "$demo_dir/bakerd.log" | tail -n 1)
-  [[ -n $address ]] && break
-  kill -0 "$daemon" 2>/dev/null || { cat "$demo_dir/bakerd.log" >&2; exit 1; }
-  sleep 0.1
-done
-[[ -n $address ]] || { echo "demo.sh: bakerd did not start within 10 s, see $demo_dir/bakerd.log" >&2; exit 1; }
-export DRTV_SERVER=$address
+start_daemon "$bin" "$demo_dir"
 
 say "Bake (preset $preset)"
 rm -rf "$demo_dir/sectors"
@@ -57,13 +46,20 @@ rm -rf "$demo_dir/sectors"
 say "Validate"
 "$bin/drtv" validate --neighbours "$demo_dir/sectors"
 
-say "Picture"
-"$bin/drtv" preview "$demo_dir/sectors" --out "$demo_dir/island.png"
+say "Pictures"
+map=$demo_dir/map/island.gltf
+render() { "$bin/bakerd" render "$demo_dir/sectors" --map "$map" "$@"; }
+# Two huts, lanterns and the jungle of the inland village, at four times of a day that an artist has set.
+render --camera 233,-72,54.3 --look 215,-80,53.5 --gradients "$source_dir/deploy/demo_map/day.json" \
+  --times 06:45,12:00,17:15,20:00 --out "$demo_dir/island_day.png"
+render --top --size 1600x1143 --out "$demo_dir/island_above.png"
+"$bin/drtv" preview "$demo_dir/sectors" --under "$demo_dir/island_above.png" --out "$demo_dir/island_probes.png"
 "$bin/drtv" preview "$demo_dir/sectors" --quantity sky --out "$demo_dir/island_sky.png"
 
 count=$(find "$demo_dir/sectors" -name '*.drtv' | wc -l)
 cat <<END
 
 $count sector files: $demo_dir/sectors
-pictures:         $demo_dir/island.png  $demo_dir/island_sky.png
+pictures:         $demo_dir/island_day.png  the island over a day
+                  $demo_dir/island_above.png  island_probes.png  island_sky.png
 END

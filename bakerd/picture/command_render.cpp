@@ -98,7 +98,7 @@ class Rendering {
     Expected<void> choose_exposure() {
         const std::string& text = request_.exposure;
         if (text == "noon") {
-            ev_ = ev_of(noon_);
+            ev_ = ev_at_noon();
             return {};
         }
         if (text == "auto")
@@ -114,16 +114,22 @@ class Rendering {
         return {};
     }
 
-    // A scene without light stays black.
-    [[nodiscard]] float ev_of(const Hour& hour) const {
-        const Show show =
-            is_light(setting_->show()) && setting_->show() != Show::probes ? setting_->show() : Show::all;
-        // Of one part of the ambient light as of all of it: parts stay comparable.
-        const Moment moment = moment_of(hour);
-        const Painter painter(
-            setting_->scenery(), moment, setting_->camera(), show == Show::all ? show : Show::ambient);
-        const float mean = mean_luminance(painter, setting_->camera(), setting_->scenery().scene());
+    // Of what is shown; where no light of that is to be seen at noon, at the picture's own hour.
+    [[nodiscard]] float ev_at_noon() const {
+        const float at_noon = mean_of(noon_);
+        const float mean = at_noon > 0 ? at_noon : mean_of(hours_.front());
         return mean > 0 ? ev_for(mean) : 0;
+    }
+    [[nodiscard]] float ev_of(const Hour& hour) const {
+        const float mean = mean_of(hour);
+        return mean > 0 ? ev_for(mean) : 0;
+    }
+    [[nodiscard]] float mean_of(const Hour& hour) const {
+        const Show show = setting_->show();
+        const Moment moment = moment_of(hour);
+        const bool as_all = !is_light(show) || show == Show::probes;
+        const Painter painter(setting_->scenery(), moment, setting_->camera(), as_all ? Show::all : show);
+        return mean_luminance(painter, setting_->camera(), setting_->scenery().scene());
     }
 
     Expected<void> print_picks() {

@@ -57,7 +57,7 @@ class Comparing {
         CompareFigures figures;
         for (const CompareFigures& row : rows)
             figures.add(row);
-        return {std::move(picture_), table_of(figures)};
+        return {std::move(picture_), table_of(figures, shown())};
     }
 
   private:
@@ -205,7 +205,7 @@ class Comparing {
                                    picture::part_of(truth.second, compared_parts[n]));
         }
         const glm::vec3 found = picture::part_of(ambient, shown());
-        figures.all.add(
+        figures.shown.add(
             found, found, picture::part_of(truth.first, shown()), picture::part_of(truth.second, shown()));
         figures.storage.add(found, found, by_truth, by_truth);
     }

@@ -54,22 +54,20 @@ void ErrorSum::add(const ErrorSum& other) {
 void CompareFigures::add(const CompareFigures& other) {
     for (std::size_t n = 0; n < by_part.size(); ++n)
         by_part[n].add(other.by_part[n]);
-    all.add(other.all);
+    shown.add(other.shown);
     storage.add(other.storage);
     interpolation.add(other.interpolation);
     shading.add(other.shading);
 }
 
-std::string table_of(const CompareFigures& figures) {
+std::string table_of(const CompareFigures& figures, Show shown) {
     constexpr double least_mean = 1e-30;
-    const double percent = 100 / std::max(figures.all.truth / count_of(figures.all), least_mean);
+    const double percent = 100 / std::max(figures.shown.truth / count_of(figures.shown), least_mean);
     std::string text = "ambient light of the surfaces in sight, beside path tracing\n";
     text += fmt::format("{:<16}{:>9}{:>9}{:>9}\n", "part", "share %", "bias %", "rms %");
-    for (std::size_t n = 0; n < compared_parts.size(); ++n) {
-        const auto name = std::ranges::find(show_names(), compared_parts[n], &ShowName::show)->name;
-        text += row(name, figures.by_part[n], percent);
-    }
-    text += row("all", figures.all, percent);
+    for (std::size_t n = 0; shown == Show::ambient && n < compared_parts.size(); ++n)
+        text += row(name_of(compared_parts[n]), figures.by_part[n], percent);
+    text += row(shown == Show::ambient ? "all" : name_of(shown), figures.shown, percent);
     text += "causes, each beside the next nearer to the truth\n";
     text += cause("storage", figures.storage, percent);
     text += cause("interpolation", figures.interpolation, percent);

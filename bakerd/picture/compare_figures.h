@@ -28,7 +28,8 @@ struct ErrorSum {
 
 struct CompareFigures {
     std::array<ErrorSum, compared_parts.size()> by_part;
-    ErrorSum all;
+    ErrorSum shown;  // what the picture shows: one part, or all
+    // Of what is shown.
     ErrorSum storage;        // what the files hold beside true colours at the same probes
     ErrorSum interpolation;  // these beside true colours at the place itself
     ErrorSum shading;        // and these, by four weights, beside the truth
@@ -36,7 +37,8 @@ struct CompareFigures {
     void add(const CompareFigures& other);
 };
 
-// Lines of text: shares of the light, bias and root mean square, in percent of the mean of all light.
-[[nodiscard]] std::string table_of(const CompareFigures& figures);
+// Lines of text: bias and root mean square in percent of the mean of what is shown; where that is all light,
+// by part, with their shares of it.
+[[nodiscard]] std::string table_of(const CompareFigures& figures, Show shown);
 
 }  // namespace drtv::picture

@@ -115,15 +115,21 @@ float mean_luminance(const Painter& painter, const Camera& camera, const trace::
         if (point)
             luminances[n] = map::luminance(painter.colour(pixel)) / std::sqrt(painter.brightness_of(*point));
     });
+    // Many surfaces have next to nothing of one part of the light: a geometric mean would be next to nothing.
+    const bool geometric = painter.shows_all();
     double sum = 0;
     std::size_t count = 0;
     for (const float luminance : luminances) {
         if (!(luminance > 0))
             continue;
-        sum += std::log(static_cast<double>(luminance));
+        const auto value = static_cast<double>(luminance);
+        sum += geometric ? std::log(value) : value;
         ++count;
     }
-    return count > 0 ? static_cast<float>(std::exp(sum / static_cast<double>(count))) : 0;
+    if (count == 0)
+        return 0;
+    const double mean = sum / static_cast<double>(count);
+    return static_cast<float>(geometric ? std::exp(mean) : mean);
 }
 
 }  // namespace drtv::picture

@@ -18,8 +18,9 @@ using Progress = std::function<void(std::size_t done)>;
 // from its neighbours. The same bytes for any number of threads. `exposure`: of light.
 [[nodiscard]] kit::Image draw(const Painter& painter, Size size, float exposure, const Progress& progress);
 
-// The geometric mean of the luminance of surfaces over the root of their albedo, over a grid of rays: so
-// white maps come out brighter than dark ones, and not by all that they are. 0 where no surface is lit.
+// By what to expose, over a grid of rays: where the whole scene is shown, the geometric mean of the luminance
+// of surfaces over the root of their albedo, so that white maps come out brighter than dark ones, and not by
+// all that they are; of a part of the light, its mean. 0 where no surface is lit.
 [[nodiscard]] float mean_luminance(const Painter& painter, const Camera& camera, const trace::Scene& scene);
 
 }  // namespace drtv::picture

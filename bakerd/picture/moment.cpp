@@ -3,7 +3,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include <algorithm>
 #include <array>
 #include <numbers>
 
@@ -104,9 +103,12 @@ std::optional<Incidence> Moment::sun() const {
 glm::vec3 Moment::factor_of(std::string_view group) const {
     if (group.empty())
         return as_vec(light().static_colour);
-    const std::span<const GroupColour> groups = light().groups;
-    const auto named = std::ranges::find(groups, group, &GroupColour::name);
-    return as_vec(named == groups.end() ? light().other_groups : named->colour);
+    Float3 factor = light().other_groups;
+    for (const GroupColour& named : light().groups) {
+        if (named.name == group)
+            factor = named.colour;
+    }
+    return as_vec(factor);
 }
 
 glm::vec3 Moment::sky(const glm::vec3& direction, bool with_sun) const {

@@ -31,6 +31,7 @@ class Painter {
     [[nodiscard]] glm::vec3 colour(glm::vec2 pixel) const;
     [[nodiscard]] bool is_light() const { return picture::is_light(show_); }
 
+    [[nodiscard]] bool shows_all() const { return show_ == Show::all; }
     // How much of its light a surface shows.
     [[nodiscard]] float brightness_of(const SurfacePoint& point) const;
 

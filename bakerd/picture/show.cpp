@@ -23,6 +23,10 @@ const std::vector<ShowName>& show_names() {
     return names;
 }
 
+std::string_view name_of(Show show) {
+    return std::ranges::find(show_names(), show, &ShowName::show)->name;
+}
+
 Show show_of(std::string_view name) {
     return std::ranges::find(show_names(), name, &ShowName::name)->show;
 }

@@ -33,6 +33,7 @@ struct ShowName {
     std::string_view name;
 };
 [[nodiscard]] const std::vector<ShowName>& show_names();
+[[nodiscard]] std::string_view name_of(Show show);
 // REQUIRES: a name of the table.
 [[nodiscard]] Show show_of(std::string_view name);
 

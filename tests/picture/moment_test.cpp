@@ -118,7 +118,8 @@ TEST(Moment, SkyIsTheGradientAndHasASun) {
 TEST(Moment, GroupsHaveTheirFactors) {
     kit::RequestedLight light;
     light.light.static_colour = {1, 2, 3};
-    light.groups = {{"lanterns", {0.5f, 0.25f, 0.125f}}};
+    // The last of a name counts, as for the runtime.
+    light.groups = {{"lanterns", {3, 3, 3}}, {"lanterns", {0.5f, 0.25f, 0.125f}}};
     light.light.groups = light.groups;
     light.light.other_groups = {7, 7, 7};
     const Moment moment(baked_yard().set(), light, {}, window);

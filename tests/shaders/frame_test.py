@@ -1,13 +1,17 @@
-"""An interior's mask in rendered frames: drawn, blurred, and held against the geometry. Usage: SCRIPT SHADER_FOLDER"""
+"""Rendered frames: an interior's mask, drawn, blurred and held against the geometry; and a scene's ambient light from
+volumes and tiles, at full and at half resolution, held against the C++. Usage: SCRIPT SHADER_FOLDER WRITE_FRAME"""
 import array
+import json
 import math
 import os
+import subprocess
 import sys
+import tempfile
 import unittest
 
 import moderngl
 
-SHADERS = os.path.abspath(sys.argv[1])
+SHADERS, WRITE_FRAME = (os.path.abspath(path) for path in sys.argv[1:3])
 WIDTH, HEIGHT = 320, 240
 FIELD_OF_VIEW = math.radians(60)
 OFFSET_M, SOFT_M = 0.5, 1.0
@@ -207,6 +211,170 @@ class Mask(unittest.TestCase):
         self.assertGreater(len(errors), 1000)
         self.assertLess(sum(errors) / len(errors), 0.06)
         print(f"mask blurred: mean error {sum(errors) / len(errors):.3f}, {fading} pixels fade")
+
+
+AMBIENT = """#version 450
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(std430, binding = 0) readonly buffer Numbers { float numbers[]; };
+layout(binding = 0) uniform sampler3D volume0;
+layout(binding = 1) uniform sampler3D volume1;
+layout(binding = 2) uniform sampler3D volume2;
+layout(binding = 3) uniform sampler2D tile_texture;
+layout(binding = 4) uniform sampler2D places;   // and the distance
+layout(binding = 5) uniform sampler2D normals;
+layout(rgba32f, binding = 0) writeonly uniform image2D ambient;
+layout(rgba32f, binding = 1) writeonly uniform image2D surface;
+uniform int step;  // pixels of the picture a texel of the buffer
+#define DRTV_FETCH(k, uvw) (k == 0 ? textureLod(volume0, uvw, 0.0) : k == 1 ? textureLod(volume1, uvw, 0.0) : textureLod(volume2, uvw, 0.0))
+#define DRTV_FETCH_TILE(column) texelFetch(tile_texture, column, 0).xy
+// HERE
+vec3 three(int n) { return vec3(numbers[n], numbers[n + 1], numbers[n + 2]); }
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    vec4 place = texelFetch(places, at * step, 0);
+    vec3 normal = texelFetch(normals, at * step, 0).xyz;
+    DrtvVolume volume = DrtvVolume(three(0), three(3), three(6), three(9), three(12), numbers[15], int(numbers[16]), int(numbers[17]));
+    DrtvTiles tiles = DrtvTiles(vec2(numbers[18], numbers[19]), numbers[20], numbers[21]);
+    DrtvColours far = DrtvColours(three(22), three(25), three(28), three(31));
+    DrtvColours outdoors = drtv_outdoors(volume, tiles, far, place.xyz);
+    vec3 colour = place.w > 0.0 ? drtv_ambient(DRTV_ACCURATE, outdoors, far, 0.0, normal) : vec3(0.0);
+    imageStore(ambient, at, vec4(colour, 0.0));
+    imageStore(surface, at, vec4(normal, place.w));
+}
+"""
+UPSAMPLE = """#version 450
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform sampler2D ambient;
+layout(binding = 1) uniform sampler2D surface;
+layout(binding = 4) uniform sampler2D places;
+layout(binding = 5) uniform sampler2D normals;
+layout(rgba32f, binding = 0) writeonly uniform image2D result;
+uniform int step;
+uniform bool plainly;
+#define DRTV_FETCH_MASK(pixel) vec2(0.0)
+#define DRTV_FETCH_AMBIENT(pixel) texelFetch(ambient, clamp(pixel, ivec2(0), textureSize(ambient, 0) - 1), 0)
+#define DRTV_FETCH_SURFACE(pixel) texelFetch(surface, clamp(pixel, ivec2(0), textureSize(surface, 0) - 1), 0)
+// HERE
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    vec2 at = vec2(pixel) / float(step) + 0.5;
+    vec3 colour = drtv_upsampled(at, texelFetch(normals, pixel, 0).xyz, texelFetch(places, pixel, 0).w);
+    if (plainly)
+        colour = textureLod(ambient, at / vec2(textureSize(ambient, 0)), 0.0).xyz;
+    imageStore(result, pixel, vec4(colour, 0.0));
+}
+"""
+
+
+class Scene(unittest.TestCase):
+    """A frame of the yard: places, normals and distances come from the C++, and so does the right light."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.context = context = moderngl.create_standalone_context(backend="egl")
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([WRITE_FRAME, folder], check=True)
+
+            def bytes_of(name):
+                with open(os.path.join(folder, name), "rb") as file:
+                    return file.read()
+
+            about = json.loads(bytes_of("frame.json"))
+            cls.size = tuple(about["size"])
+            cls.expected = array.array("f", bytes_of("expected"))
+            pixels = array.array("f", bytes_of("pixels"))
+            cls.kept = [
+                context.texture3d(tuple(about["texels"]), 4, bytes_of(f"texels{k}"), alignment=1, dtype="f2")
+                for k in range(3)
+            ]
+            cls.kept.append(context.texture((about["tiles"],) * 2, 2, bytes_of("tiles"), dtype="f4"))
+            cls.numbers = context.buffer(bytes_of("numbers"))
+        cls.distances = pixels[6::8]
+        places, normals = array.array("f"), array.array("f")
+        for n in range(0, len(pixels), 8):
+            places.extend((*pixels[n : n + 3], pixels[n + 6]))
+            normals.extend((*pixels[n + 3 : n + 6], 0))
+        cls.kept += [context.texture(cls.size, 4, data.tobytes(), dtype="f4") for data in (places, normals)]
+        for texture in cls.kept[:3]:
+            texture.filter, texture.repeat_x = (moderngl.LINEAR, moderngl.LINEAR), False
+            texture.repeat_y = texture.repeat_z = False
+
+    def shader(self, source, include):
+        with open(os.path.join(SHADERS, include), encoding="utf-8") as file:
+            return self.context.compute_shader(source.replace("// HERE", file.read()))
+
+    def image(self, size):
+        texture = self.context.texture(size, 4, dtype="f4")
+        texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+        texture.repeat_x = texture.repeat_y = False
+        return texture
+
+    def ambient(self, step):
+        """The ambient buffer of every step-th pixel, and what it shows."""
+        size = tuple(n // step for n in self.size)
+        ambient, surface = self.image(size), self.image(size)
+        for unit, texture in enumerate(self.kept):
+            texture.use(unit)
+        self.numbers.bind_to_storage_buffer(0)
+        ambient.bind_to_image(0, read=False, write=True)
+        surface.bind_to_image(1, read=False, write=True)
+        shader = self.shader(AMBIENT, "drtv_ambient.glsl")
+        shader["step"].value = step
+        shader.run(-(-size[0] // 8), -(-size[1] // 8))
+        return ambient, surface
+
+    def upsampled(self, step, plainly):
+        ambient, surface = self.ambient(step)
+        result = self.image(self.size)
+        ambient.use(0)
+        surface.use(1)
+        self.kept[4].use(4)
+        self.kept[5].use(5)
+        result.bind_to_image(0, read=False, write=True)
+        shader = self.shader(UPSAMPLE, "drtv_passes.glsl")
+        shader["step"].value, shader["plainly"].value = step, plainly
+        shader.run(self.size[0] // 8, self.size[1] // 8)
+        return array.array("f", result.read())
+
+    def errors(self, found):
+        """By pixel that shows a surface: of the largest channel, over the mean light or the pixel's own."""
+        lights = [max(self.expected[4 * n : 4 * n + 3]) for n, d in enumerate(self.distances) if d > 0]
+        mean, errors = sum(lights) / len(lights), []
+        for n, distance in enumerate(self.distances):
+            if distance == 0:
+                continue
+            right, shown = self.expected[4 * n : 4 * n + 3], found[4 * n : 4 * n + 3]
+            errors.append(max(abs(a - b) for a, b in zip(right, shown)) / max(mean, *right))
+        return errors
+
+    def test_the_frame_is_what_the_cpp_finds(self):
+        ambient, _ = self.ambient(1)
+        errors = self.errors(array.array("f", ambient.read()))
+        self.assertGreater(len(errors), 30000)
+        # Filtered by weights of 8 bits between texels that differ by their whole value.
+        self.assertLess(max(errors), 2 / 255)
+        self.assertLess(sum(errors) / len(errors), 0.2 / 255)
+
+    def test_the_frame_has_volume_and_distance(self):
+        """Else the tests here would show less than they say."""
+        numbers = array.array("f", self.numbers.read())
+        half = [1 / (2 * scale) for scale in numbers[3:6]]
+        places = array.array("f", self.kept[4].read())
+        inside = outside = 0
+        for n in range(0, len(places), 4):
+            if places[n + 3] > 0:
+                is_inside = all(abs(p) < h for p, h in zip(places[n : n + 3], half))
+                inside, outside = inside + is_inside, outside + (not is_inside)
+        self.assertGreater(min(inside, outside), 4000)
+
+    def test_a_smaller_buffer_keeps_edges(self):
+        for step, mean_limit, worst_limit in ((2, 0.003, 0.02), (4, 0.006, 0.05)):
+            errors = sorted(self.errors(self.upsampled(step, False)))
+            plain = self.errors(self.upsampled(step, True))
+            mean, worst = sum(errors) / len(errors), errors[int(0.98 * len(errors))]
+            self.assertLess(mean, mean_limit)
+            self.assertLess(worst, worst_limit)
+            self.assertGreater(sum(plain) / len(plain), 2 * mean, "a filter that knows no surfaces is worse")
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 // b2 b, down r. case.json: textures (file, size, format), "atlas", "repeat".
 #include "tests/format/sectors.h"
 #include "tests/runtime/sets.h"
+#include "tests/shaders/case_files.h"
 
 #include <drtv/ambient.h>
 #include <drtv/tile_texture.h>
@@ -30,13 +31,6 @@ namespace {
 
 constexpr SectorSetLimits limits{.sectors = 36, .probes = 36 * 64, .interiors = 0, .tiles = 64};
 constexpr std::uint32_t tile_sectors = 8;
-
-template <class Value>
-void write_file(const std::filesystem::path& path, std::span<const Value> values) {
-    std::ofstream file(path, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(values.data()),
-               static_cast<std::streamsize>(values.size_bytes()));
-}
 
 // Colours that differ from probe to probe by some tenths; a hole in the grid.
 Sector sector_at(SectorId id) {
@@ -70,6 +64,7 @@ struct Case {
     std::int32_t away = 0;  // sectors from the origin
     float scale = 4;
     float brightness = 1;
+    double shift_m = 0;  // of the engine's origin; it keeps floats
 };
 
 std::vector<Case> cases() {
@@ -87,30 +82,19 @@ std::vector<Case> cases() {
     }
     all.push_back(
         {"far-out", {.size = size, .encoding = TexelEncoding::rgba16f}, RelightMode::accurate, 1600});
+    all.push_back({"shifted-origin",
+                   {.size = size, .encoding = TexelEncoding::rgba16f},
+                   RelightMode::accurate,
+                   1600,
+                   4,
+                   1,
+                   102'403.7});
     all.push_back({"odd-size", {.size = {21, 19, 7}, .texel_m = {3, 5, 2.5f}}, RelightMode::accurate, -3});
     all.push_back({"clipped", {.size = size}, RelightMode::accurate, 0, 0.5f});
     all.push_back(
         {"bright", {.size = size, .encoding = TexelEncoding::rgba16f}, RelightMode::accurate, 0, 4, 1e5f});
     return all;
 }
-
-class Numbers {
-  public:
-    void add(float number) { numbers_.push_back(number); }
-    template <class Vector>
-    void add_all(const Vector& vector) {
-        for (const float number : vector)
-            add(number);
-    }
-    void add(const BasisColours& colours) {
-        for (const Float3& colour : colours)
-            add_all(colour);
-    }
-    [[nodiscard]] std::span<const float> all() const { return numbers_; }
-
-  private:
-    std::vector<float> numbers_;
-};
 
 BasisColours mixed(const BasisColours& a, const BasisColours& b, float share) {
     BasisColours result;
@@ -192,22 +176,11 @@ void write_case(const std::filesystem::path& folder, const Case& of, int point_c
     volume->update(*set, *relit, camera);
 
     const VolumeShaderInputs inputs = volume->shader_inputs();
-    const TileShaderInputs tile_inputs = tile_shader_inputs(tile_sectors, inputs.snapped_camera);
     const BasisColours far = relit->fallback();
     const BasisColours indoors = {{{0.1f, 0.2f, 0.3f}, {0.5f, 0.1f, 0}, {0, 0.4f, 0.2f}, {0.9f, 0.7f, 0.5f}}};
     Numbers numbers;
-    for (const std::int32_t size : of.settings.size)
-        numbers.add(static_cast<float>(size));
-    numbers.add_all(inputs.uv_scale);
-    numbers.add_all(inputs.wrap_offset);
-    numbers.add_all(inputs.uvw_multiply);
-    numbers.add_all(inputs.uvw_add);
-    numbers.add(inputs.scale);
-    numbers.add(static_cast<float>(of.settings.encoding));
-    numbers.add(of.settings.atlas ? 1 : 0);
-    numbers.add_all(tile_inputs.camera);
-    numbers.add(tile_inputs.columns);
-    numbers.add(tile_inputs.camera_z);
+    numbers.add(*volume);
+    numbers.add(tile_shader_inputs(tile_sectors, inputs.snapped_camera));
     numbers.add(far);
     numbers.add(indoors);
     numbers.add(of.mode == RelightMode::literal ? 0 : 1);
@@ -230,6 +203,9 @@ void write_case(const std::filesystem::path& folder, const Case& of, int point_c
                 texels = world[axis] / texel_m;
             } while (std::abs(texels - std::round(texels)) < 0.001);  // where floats may choose another
             centre[axis] = (std::floor(texels) + 0.5) * texel_m;
+            if (of.shift_m != 0 && axis < 2)
+                place[axis] = static_cast<float>(world[axis] - of.shift_m) -
+                              static_cast<float>(inputs.snapped_camera[axis] - of.shift_m);
         }
         const double x = static_cast<double>(normal_of(random));
         const double y = static_cast<double>(normal_of(random));

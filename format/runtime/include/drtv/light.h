@@ -66,7 +66,8 @@ struct Sun {
 // from flat ground is right at every height of the sun.
 [[nodiscard]] DistantLight sun_as_sh(RelightMode mode, const Sun& sun);
 
-// The game's colour for the lights of one group (`light_group` in the map): 1 is as they are in the map.
+// The game's colour for the lights of one group (`light_group` in the map): 1 is as they are in the map. Of
+// several for one group the last counts.
 struct GroupColour {
     std::string_view name;
     Float3 colour{1, 1, 1};
