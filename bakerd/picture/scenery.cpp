@@ -62,9 +62,10 @@ std::size_t triangles_near(const map::Map& map, glm::vec2 place) {
     std::vector<bool> counted(map.meshes.size());
     std::size_t count = 0;
     for (const map::Object& object : map.objects) {
-        if (counted[object.mesh] || !is_near(object.bounds, place))
+        const bool is_instance = !trace::is_kept_in_world_space(object.bounds);
+        if ((is_instance && counted[object.mesh]) || !is_near(object.bounds, place))
             continue;
-        counted[object.mesh] = true;
+        counted[object.mesh] = is_instance;
         count += triangles_of(map.meshes[object.mesh]);
     }
     return count;

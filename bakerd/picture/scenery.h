@@ -25,8 +25,8 @@ inline constexpr std::size_t max_triangles = 64'000'000;
 
 class Scenery {
   public:
-    // Objects within sight of the place. Fails where they are over max_triangles: an instance counts once for
-    // all of its mesh.
+    // Objects within sight of the place. Fails where they are over max_triangles: of small ones all instances
+    // of a mesh count once.
     [[nodiscard]] static Expected<std::unique_ptr<const Scenery>> build(std::shared_ptr<const map::Map> map,
                                                                         glm::vec2 around);
 

@@ -73,6 +73,10 @@ struct Region {
     glm::vec2 high;
 };
 
+// Whether a scene has triangles of its own of an object with these bounds, instead of an instance of its
+// mesh.
+[[nodiscard]] bool is_kept_in_world_space(const map::Bounds& bounds);
+
 class Scene {
   public:
     // All objects whose bounds come within `reach_m` of the region.

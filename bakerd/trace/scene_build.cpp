@@ -21,15 +21,14 @@ bool is_mirroring(const glm::mat4x3& world_from_object) {
     return glm::dot(glm::cross(x, y), z) < 0;
 }
 
-// Terrain and the like is cut to what lies within reach and put into world space: its memory follows the
-// reach too, and rays near it need no transform. It must depend on the object alone: a hit's last digits are
-// not the same either way.
-bool is_large(const map::Bounds& bounds) {
+}  // namespace
+
+// Terrain and the like is cut to what lies within reach: its memory follows the reach too, and rays near it
+// need no transform. It must depend on the object alone: a hit's last digits are not the same either way.
+bool is_kept_in_world_space(const map::Bounds& bounds) {
     constexpr float side_m = 96;
     return std::max(bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y) > side_m;
 }
-
-}  // namespace
 
 std::shared_ptr<const Scene> Scene::build(MapGeometry& geometry, const Region& region, float reach_m) {
     std::shared_ptr<Scene> scene(new Scene);
@@ -46,7 +45,7 @@ std::shared_ptr<const Scene> Scene::build(MapGeometry& geometry, const Region& r
             continue;
         scene->bounds_.extend(object.bounds.low);
         scene->bounds_.extend(object.bounds.high);
-        if (is_large(object.bounds) || !geometry.shape_of(object)) {
+        if (is_kept_in_world_space(object.bounds) || !geometry.shape_of(object)) {
             scene->add_in_world_space(n, geometry.closed_parts_of(object.mesh), region, reach_m);
             continue;
         }
