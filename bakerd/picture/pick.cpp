@@ -2,7 +2,7 @@
 
 #include "bakerd/picture/painter.h"
 #include "bakerd/trace/device.h"
-#include "format/kit/json_writer.h"
+#include "format/kit/ambient_json.h"
 #include "format/kit/number_list.h"
 
 #include <fmt/format.h>
@@ -11,17 +11,6 @@
 
 namespace drtv::picture {
 namespace {
-
-void write_parts(kit::JsonWriter& json, const AmbientParts& parts) {
-    json.key("parts").begin_object();
-    json.key("sky_direct").array(parts.sky_direct);
-    json.key("sky_bounce").array(parts.sky_bounce);
-    json.key("sun_bounce").array(parts.sun_bounce);
-    json.key("static").array(parts.static_light);
-    json.key("local").array(parts.local);
-    json.key("fallback").array(parts.fallback);
-    json.end_object();
-}
 
 void write_surface(kit::JsonWriter& json,
                    const Setting& setting,
@@ -34,17 +23,11 @@ void write_surface(kit::JsonWriter& json,
     json.key("normal").array(as_float3(point.hit.normal));
     json.member("front", point.hit.front);
     json.key("albedo").array(as_float3(point.surface.albedo));
-    json.key("probe");
-    if (ambient.probe.sector == nullptr) {
-        json.null();
-    } else {
-        const SectorView& view = ambient.probe.sector->view;
-        json.begin_object().key("sector").begin_array().value(view.i).value(view.j).end_array();
-        json.member("index", int{ambient.probe.probe}).end_object();
-    }
-    json.member("interior", ambient.interior.share);
+    kit::append_reference(json, "probe", ambient.probe.sector, ambient.probe.probe);
+    kit::append_reference(json, "interior", ambient.interior.sector, ambient.interior.index);
+    json.member("interior_share", ambient.interior.share);
     json.key("ambient").array(ambient.colour);
-    write_parts(json, ambient.parts);
+    kit::append_parts(json, ambient.parts);
     json.key("direct").array(as_float3(direct_light(setting.scenery(), moment, point)));
 }
 

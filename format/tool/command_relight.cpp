@@ -1,6 +1,7 @@
 #include "command_relight.h"
 
 #include "commands.h"
+#include "kit/ambient_json.h"
 #include "kit/exit_code.h"
 #include "kit/json_writer.h"
 #include "kit/number_list.h"
@@ -35,39 +36,17 @@ const char* name_of(PlaceStatus status) {
     return "no_probe";
 }
 
-void append_reference(kit::JsonWriter& json,
-                      const char* key,
-                      const LoadedSector* sector,
-                      std::uint32_t index) {
-    json.key(key);
-    if (sector == nullptr) {
-        json.null();
-        return;
-    }
-    json.begin_object().key("sector").begin_array().value(sector->view.i).value(sector->view.j).end_array();
-    json.member("index", index);
-    json.end_object();
-}
-
 void print_json(const RelightPoint& point, const Ambient& ambient) {
     kit::JsonWriter json;
     json.begin_object().key("at").array(point.at).key("normal").array(point.normal);
     json.member("status", name_of(ambient.status));
-    append_reference(json, "probe", ambient.probe.sector, ambient.probe.probe);
-    append_reference(json, "interior", ambient.interior.sector, ambient.interior.index);
+    kit::append_reference(json, "probe", ambient.probe.sector, ambient.probe.probe);
+    kit::append_reference(json, "interior", ambient.interior.sector, ambient.interior.index);
     json.key("basis_colours").begin_array();
     for (const Float3& colour : ambient.colours)
         json.array(colour);
     json.end_array();
-    const AmbientParts& parts = ambient.parts;
-    json.key("parts").begin_object();
-    json.key("sky_direct").array(parts.sky_direct);
-    json.key("sky_bounce").array(parts.sky_bounce);
-    json.key("sun_bounce").array(parts.sun_bounce);
-    json.key("static").array(parts.static_light);
-    json.key("local").array(parts.local);
-    json.key("fallback").array(parts.fallback);
-    json.end_object();
+    kit::append_parts(json, ambient.parts);
     json.key("colour").array(ambient.colour).end_object();
     std::puts(json.text().c_str());
 }

@@ -88,14 +88,16 @@ SceneSource talk_scene() {
     return scene;
 }
 
+BakedMap baked_like_talk_scene(const GltfBuilder& builder) {
+    bake::Settings settings;
+    settings.rays = 512;
+    settings.min_distance_m = 4;
+    settings.local_transfer = true;
+    return {builder, settings, {{0, 0}, {1, 0}, {2, 0}}};
+}
+
 const BakedMap& baked_talk_scene() {
-    static const BakedMap map = [] {
-        bake::Settings settings;
-        settings.rays = 512;
-        settings.min_distance_m = 4;
-        settings.local_transfer = true;
-        return BakedMap(talk_scene().b, settings, {{0, 0}, {1, 0}, {2, 0}});
-    }();
+    static const BakedMap map = baked_like_talk_scene(talk_scene().b);
     return map;
 }
 

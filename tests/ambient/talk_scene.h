@@ -19,8 +19,10 @@ inline constexpr glm::vec3 under_leaves(156, 32, 0.5f);
 inline constexpr glm::vec3 in_clearing(108, 56, 0.5f);
 
 [[nodiscard]] SceneSource talk_scene();
+// Sectors (0, 0) to (2, 0) of the scene, or of one made of it; with local transfer.
+[[nodiscard]] BakedMap baked_like_talk_scene(const GltfBuilder& builder);
 
-// Sectors (0, 0) to (2, 0), with local transfer; baked once for each process.
+// Baked once for each process.
 [[nodiscard]] const BakedMap& baked_talk_scene();
 
 }  // namespace drtv::test

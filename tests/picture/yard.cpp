@@ -37,13 +37,7 @@ GltfBuilder yard() {
 }
 
 const BakedMap& baked_yard() {
-    static const BakedMap map = [] {
-        bake::Settings settings;
-        settings.rays = 512;
-        settings.min_distance_m = 4;
-        settings.local_transfer = true;
-        return BakedMap(yard(), settings, {{0, 0}, {1, 0}, {2, 0}});
-    }();
+    static const BakedMap map = baked_like_talk_scene(yard());
     return map;
 }
 

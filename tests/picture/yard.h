@@ -11,7 +11,7 @@
 namespace drtv::test {
 
 [[nodiscard]] GltfBuilder yard();
-// Sectors (0, 0) to (2, 0), with local transfer; baked once for each process.
+// Baked once for each process.
 [[nodiscard]] const BakedMap& baked_yard();
 [[nodiscard]] const picture::Scenery& yard_scenery();
 

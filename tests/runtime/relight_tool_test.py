@@ -433,7 +433,7 @@ class Usage(Tool):
             ("--at excludes --points", *self.PLACE, "--points=-"),
             ("--time excludes --sky", *self.PLACE, "--time=12:00", "--sky=1,1,1"),
             ("--time excludes --sun-direction", *self.PLACE, "--time=12:00", "--sun-direction=0,0,1"),
-            ("--gradients requires --time", *self.PLACE, "--gradients=day.json"),
+            ("--gradients goes with --time", *self.PLACE, "--gradients=day.json"),
             ("--sun requires --sun-direction", *self.PLACE, "--sun=1,1,1"),
             ("--sky excludes --sky-colours", *self.PLACE, "--sky=1,1,1", "--sky-colours=1,1,1,1,1,1,1,1,1"),
             ("not expected: there", *self.PLACE, "there"),
