@@ -53,8 +53,9 @@ altogether, because their upward directions see the ground too." --show sky_boun
 shown sun_bounce "Sun bounce" "Grass in the sun shines green on the walls. Two bands of transfer cannot cast the sun's shadows." \
   --show sun_bounce --time 09:00 --paths 256 "${village[@]}"
 shown static "Static light" "Lanterns at night, a light group of the map." --show static --time 20:00 --paths 256 "${village[@]}"
-shown local "Local transfer" "The bounce of a lamp that the game has put up between the huts." \
-  --show local --time 20:00 --paths 256 "${dark[@]}" --light 222,-80,55,14,8,4 "${village[@]}"
+shown local "Local transfer" "The bounce of a lamp that the game has put up beside a hut. Of what comes from straight below, as under a lamp over
+open ground, two bands say less than nothing for surfaces that face up: there they take away from other light." \
+  --show local --time 20:00 --paths 256 "${dark[@]}" --light 214,-82,53.2,14,8,4 "${village[@]}"
 shown interior "Interior" "A hut that is lit by one probe, through its door and windows. Each wall has one colour." \
   --show ambient --time 12:00 --paths 256 --camera 243.3,-73.6,54 --look 240,-76.5,53.5 --fov 80
 shown distance "Distance" "From above, where all but the nearest trees lies outside of the volume: there the ambient light is that of an open sky, darkened by what each column of

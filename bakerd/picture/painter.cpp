@@ -43,8 +43,8 @@ glm::vec3 weights_colour(RelightMode mode, const glm::vec3& normal) {
 
 glm::vec3 part_of(const Ambient& ambient, Show show) {
     switch (show) {
-        case Show::sky_direct:
-            return as_vec(ambient.parts.sky_direct);
+        case Show::sky_direct:  // what stands in where no probe is known is of the sky alone
+            return as_vec(ambient.parts.sky_direct) + as_vec(ambient.parts.fallback);
         case Show::sky_bounce:
             return as_vec(ambient.parts.sky_bounce);
         case Show::sun_bounce:
