@@ -150,7 +150,13 @@ int main(int argc, char** argv) {
     }
     if (*worker_command)
         return drtv::worker::run_worker(worker_options);
-    if (*render_command)
-        return drtv::picture::run_render(render_request);
+    if (*render_command) {
+        const int exit_code = drtv::picture::run_render(render_request);
+        // A full disk behind a redirected stdout must not look like success.
+        if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
+            return exit_code;
+        complain("cannot write to standard output");
+        return drtv::kit::exit_unreadable;
+    }
     return serve(serve_options);
 }

@@ -6,6 +6,7 @@ say() { printf '\n== %s\n' "$*" >&2; }
 # start_daemon BIN_FOLDER FOLDER: with its data and its log below FOLDER; sets DRTV_SERVER. It ends with the script.
 start_daemon() {
   local bin=$1 folder=$2 address=
+  rm -f "$folder/bakerd.log"  # an old one names an old address
   # Port 0: the daemon takes a free one and says which.
   "$bin/bakerd" serve --data "$folder/data" --listen 127.0.0.1:0 2>"$folder/bakerd.log" &
   daemon=$!

@@ -49,6 +49,13 @@ trace::Ray Camera::ray(glm::vec2 pixel) const {
     return {eye_, glm::normalize(forward_ + aside), sight_m};
 }
 
+// By the square of the cosine: once because the picture's plane is farther there, once because it leans.
+float Camera::drawn_out(const glm::vec3& place) const {
+    const glm::vec3 way = place - eye_;
+    const float ahead = glm::dot(way, forward_);
+    return is_parallel_ || !(ahead > 0) ? 1 : glm::dot(way, way) / (ahead * ahead);
+}
+
 std::optional<Camera::Shown> Camera::show(const glm::vec3& place) const {
     const glm::vec3 way = place - eye_;
     const float ahead = glm::dot(way, forward_);

@@ -1,6 +1,7 @@
 // Where the rays of a picture's pixels start and go.
 #pragma once
 
+#include "bakerd/picture/rectangle.h"
 #include "bakerd/trace/ray.h"
 
 #include <glm/vec2.hpp>
@@ -14,17 +15,14 @@ namespace drtv::picture {
 // Farther away nothing is seen, metres.
 inline constexpr float sight_m = 8192;
 
+// Of a picture, and of a sheet of them.
+inline constexpr std::size_t max_pixels = 64'000'000;
+
 struct Size {
     std::size_t width = 960;  // pixels
     std::size_t height = 540;
 
     bool operator==(const Size&) const = default;
-};
-
-// Of the world, metres; x east, y north.
-struct Rectangle {
-    glm::vec2 low{};
-    glm::vec2 high{};
 };
 
 class Camera {
@@ -44,6 +42,9 @@ class Camera {
     [[nodiscard]] std::optional<Shown> show(const glm::vec3& place) const;
     // How wide a pixel is at that distance, metres.
     [[nodiscard]] float pixel_m(float distance_m) const { return pixel_m_ + distance_m * pixel_radians_; }
+    // How many times as many pixels a thing there takes up as one in the middle of the picture, at most.
+    [[nodiscard]] float drawn_out(const glm::vec3& place) const;
+    [[nodiscard]] bool is_parallel() const { return is_parallel_; }
     [[nodiscard]] const glm::vec3& eye() const { return eye_; }
     [[nodiscard]] const glm::vec3& forward() const { return forward_; }
     [[nodiscard]] Size size() const { return size_; }

@@ -2,151 +2,122 @@
 #include "bakerd/picture/compare.h"
 #include "bakerd/picture/draw.h"
 #include "bakerd/picture/film.h"
+#include "bakerd/picture/hours.h"
 #include "bakerd/picture/pick.h"
 #include "bakerd/picture/render_request.h"
 #include "bakerd/picture/setting.h"
 #include "bakerd/picture/view_arguments.h"
 
 #include "format/kit/files.h"
+#include "format/kit/number_list.h"
 #include "format/kit/progress_bar.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <deque>
 #include <memory>
 #include <thread>
 
 namespace drtv::picture {
 namespace {
 
-constexpr const char* command_name = "render";
-
-// The light of one picture, and what is drawn with it.
-struct Hour {
-    std::string time;  // empty: light by numbers
-    std::unique_ptr<kit::RequestedLight> light = std::make_unique<kit::RequestedLight>();
-};
-
-Expected<Hour> read_hour(const kit::LightRequest& request) {
-    Hour hour;
-    hour.time = request.time.value_or("");
-    // What is wrong has been told.
-    if (const int code = kit::read_light(request, command_name, *hour.light); code != kit::exit_valid)
-        return failed(static_cast<kit::ExitCode>(code), {});
-    return hour;
-}
-
-Expected<Hour> read_hour(kit::LightRequest request, const std::string& time) {
-    request.time = time;
-    return read_hour(request);
-}
-
 class Rendering {
   public:
     explicit Rendering(const RenderRequest& request) : request_(request) {}
 
     Expected<void> run() {
-        if (auto done = read_light(); !done)
+        auto hours = read_hours(request_);
+        if (!hours)
+            return tl::unexpected(hours.error());
+        hours_ = std::move(hours->shown);
+        noon_ = std::move(hours->noon);
+        if (auto done = read_exposure(); !done)
             return done;
+        if (!request_.out.empty()) {
+            if (std::string problem = kit::png_target_problem(request_.out); !problem.empty())
+                return failed(kit::exit_unreadable, std::move(problem));
+        }
         auto setting = Setting::open(request_);
         if (!setting)
             return tl::unexpected(setting.error());
         setting_ = std::move(*setting);
-        if (auto done = choose_exposure(); !done)
+        for (const Hour& hour : hours_)
+            kit::warn_of_lost_light(setting_->sectors(), *hour.light, "in sight");
+        if (auto done = check_size(); !done)
             return done;
         if (auto done = print_picks(); !done)
             return done;
-        if (request_.compare)
-            return compare();
-        if (request_.out.empty())
+        if (request_.out.empty() && !request_.compare)
             return {};
-        return write(sheet());
+        if (!sees_anything(setting_->camera(), setting_->scenery().scene()))
+            kit::complain("warning: nothing of the map is in sight");
+        if (request_.exposure == "noon")
+            ev_ = ev_at_noon();
+        return request_.compare ? compare() : write(sheet());
     }
 
   private:
-    Expected<void> read_light() {
-        kit::LightRequest light = request_.light;
-        const bool is_dark = !light.time && !light.sun && !light.sky && !light.sky_colours &&
-                             light.lights.empty() && light.groups.empty();
-        if (is_dark)
-            light.time = "12:00";
-        std::vector<std::optional<std::string>> times(request_.times.begin(), request_.times.end());
-        if (times.empty())
-            times.push_back(light.time);
-        for (const std::optional<std::string>& time : times) {
-            auto hour = time ? read_hour(light, *time) : read_hour(light);
-            if (!hour)
-                return tl::unexpected(hour.error());
-            hours_.push_back(std::move(*hour));
-        }
-        auto noon = hours_.front().time.empty() ? read_hour(light) : read_hour(light, "12:00");
-        if (!noon)
-            return tl::unexpected(noon.error());
-        noon_ = std::move(*noon);
-        return {};
-    }
-
     [[nodiscard]] Moment moment_of(const Hour& hour) const {
         return {setting_->sectors(), *hour.light, setting_->choice(), setting_->window()};
     }
 
-    Expected<void> choose_exposure() {
+    // Where it is a number.
+    Expected<void> read_exposure() {
         const std::string& text = request_.exposure;
-        if (text == "noon") {
-            ev_ = ev_at_noon();
+        if (text == "noon" || text == "auto")
             return {};
-        }
-        if (text == "auto")
-            return {};
-        float ev = 0;
-        const auto result = std::from_chars(text.data(), text.data() + text.size(), ev);
-        if (result.ec != std::errc() || result.ptr != text.data() + text.size() || !(std::abs(ev) <= 64))
+        constexpr double most = 128;
+        const auto stops = kit::number_list(text, 1);
+        if (!stops || std::abs(stops->front()) > most)
             return failed(
                 kit::exit_usage,
-                fmt::format("render: --exposure takes noon, auto, or stops from -64 to 64, not \"{}\"",
+                fmt::format("render: --exposure takes noon, auto, or stops from -{} to {}, not \"{}\"",
+                            most,
+                            most,
                             text));
-        ev_ = ev;
+        ev_ = static_cast<float>(stops->front());
         return {};
     }
 
     // Of what is shown; where no light of that is to be seen at noon, at the picture's own hour.
     [[nodiscard]] float ev_at_noon() const {
-        const float at_noon = mean_of(noon_);
-        const float mean = at_noon > 0 ? at_noon : mean_of(hours_.front());
-        return mean > 0 ? ev_for(mean) : 0;
+        const std::optional<double> at_noon = brightness_of(noon_);
+        return at_noon ? ev_for(*at_noon) : ev_of(hours_.front());
     }
     [[nodiscard]] float ev_of(const Hour& hour) const {
-        const float mean = mean_of(hour);
-        return mean > 0 ? ev_for(mean) : 0;
+        const std::optional<double> brightness = brightness_of(hour);
+        return brightness ? ev_for(*brightness) : 0;
     }
-    [[nodiscard]] float mean_of(const Hour& hour) const {
+    [[nodiscard]] std::optional<double> brightness_of(const Hour& hour) const {
         const Show show = setting_->show();
         const Moment moment = moment_of(hour);
         const bool as_all = !is_light(show) || show == Show::probes;
         const Painter painter(setting_->scenery(), moment, setting_->camera(), as_all ? Show::all : show);
-        return mean_luminance(painter, setting_->camera(), setting_->scenery().scene());
+        return brightness_log2(painter, setting_->camera(), setting_->scenery().scene());
     }
 
     Expected<void> print_picks() {
         if (request_.picks.empty())
             return {};
-        const Moment moment = moment_of(hours_.front());
-        for (const std::string& text : request_.picks) {
-            auto line = picked(*setting_, moment, text);
-            if (!line)
-                return tl::unexpected(line.error());
-            std::puts(line->c_str());
+        for (const Hour& hour : hours_) {
+            const Moment moment = moment_of(hour);
+            for (const std::string& text : request_.picks) {
+                auto line = picked(*setting_, moment, hour.time, text);
+                if (!line)
+                    return tl::unexpected(line.error());
+                std::puts(line->c_str());
+            }
         }
         return {};
     }
 
-    [[nodiscard]] kit::Image draw_hour(const Hour& hour, kit::ProgressBar& bar, std::size_t done) const {
+    [[nodiscard]] kit::Image draw_hour(const Hour& hour, kit::ProgressBar& bar, std::size_t done) {
         const float ev = ev_ ? *ev_ : ev_of(hour);
+        if (!ev_ || shown_evs_.empty())
+            shown_evs_.push_back(ev);
         const Moment moment = moment_of(hour);
         Painter painter(setting_->scenery(), moment, setting_->camera(), setting_->show());
         std::optional<TexelAge> age;
@@ -160,15 +131,35 @@ class Rendering {
         });
     }
 
-    // Pictures side by side, as near to a square as they go.
-    [[nodiscard]] kit::Image sheet() const {
+    [[nodiscard]] std::size_t sheet_columns() const {
+        return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(hours_.size()))));
+    }
+
+    // Of all pictures side by side.
+    Expected<void> check_size() const {
         const Size size = setting_->camera().size();
-        const std::size_t steps = draw_steps(size);
+        const std::size_t columns = request_.compare ? 3 : sheet_columns();
+        const std::size_t rows = (hours_.size() + columns - 1) / columns;
+        const std::size_t pixels = columns * rows * size.width * size.height;
+        if (pixels <= max_pixels)
+            return {};
+        return failed(
+            kit::exit_usage,
+            fmt::format("render: {} x {} pictures of {} would have {} million pixels, over 64 million",
+                        columns,
+                        rows,
+                        request_.size,
+                        pixels >> 20));
+    }
+
+    // Pictures side by side, as near to a square as they go.
+    [[nodiscard]] kit::Image sheet() {
+        const Size size = setting_->camera().size();
+        const std::size_t steps = draw_steps(setting_->show(), size);
         kit::ProgressBar bar("rows", steps * hours_.size());
-        if (hours_.size() == 1)
+        if (request_.times.empty())
             return draw_hour(hours_.front(), bar, 0);
-        const auto columns =
-            static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(hours_.size()))));
+        const std::size_t columns = sheet_columns();
         const std::size_t rows = (hours_.size() + columns - 1) / columns;
         kit::Image sheet(columns * size.width, rows * size.height);
         for (std::size_t n = 0; n < hours_.size(); ++n) {
@@ -184,13 +175,19 @@ class Rendering {
 
     Expected<void> write(const kit::Image& image) const {
         std::vector<kit::PngText> texts;
-        if (request_.top && hours_.size() == 1) {
+        if (request_.top && hours_.size() == 1 && !request_.compare) {
             const Rectangle& world = setting_->world();
             texts.push_back(
                 {kit::world_rectangle_key,
                  fmt::format("{},{},{},{}", world.low.x, world.low.y, world.high.x, world.high.y)});
         }
-        const std::string error = kit::write_file(request_.out, kit::encode_png(image, texts));
+        const std::vector<std::uint8_t> png = kit::encode_png(image, texts);
+        if (png.empty())
+            return failed(
+                kit::exit_unreadable,
+                fmt::format(
+                    "{}: memory is too short for {} x {} pixels", request_.out, image.width, image.height));
+        const std::string error = kit::write_png_file(request_.out, png);
         if (!error.empty())
             return failed(kit::exit_unreadable, error);
         fmt::print("{}: {} x {} pixels{}\n", request_.out, image.width, image.height, told());
@@ -203,8 +200,8 @@ class Rendering {
         if (setting_->view())
             text += ", --camera " + place_text(setting_->view()->eye) + " --look " +
                     place_text(setting_->view()->look);
-        if (is_light(setting_->show()) && ev_)
-            text += fmt::format(", --exposure {}", *ev_);
+        if (is_light(setting_->show()))
+            text += fmt::format(", --exposure {}", fmt::join(shown_evs_, ", "));
         return text;
     }
 
@@ -212,6 +209,7 @@ class Rendering {
         const Hour& hour = hours_.front();
         if (!ev_)
             ev_ = ev_of(hour);
+        shown_evs_ = {*ev_};
         const Moment moment = moment_of(hour);
         const Comparison comparison =
             compare_with_paths(*setting_, moment, {request_.paths}, exposure_of(*ev_));
@@ -222,10 +220,11 @@ class Rendering {
     static constexpr std::size_t caption_margin = 8;
 
     const RenderRequest& request_;
-    std::deque<Hour> hours_;
+    std::vector<Hour> hours_;
     Hour noon_;
     std::unique_ptr<const Setting> setting_;
-    std::optional<float> ev_;  // nothing: each picture's own
+    std::optional<float> ev_;       // nothing: each picture's own
+    std::vector<float> shown_evs_;  // of all pictures, or of each
 };
 
 }  // namespace

@@ -13,12 +13,13 @@ double count_of(const ErrorSum& sum) {
     return static_cast<double>(std::max<std::size_t>(sum.count, 1));
 }
 
-// `percent`: by which a mean becomes percent of the mean of all light.
+// `percent`: by which a mean becomes percent of the mean of all light. Where noise outweighs the errors,
+// their square may come out below 0: then nothing is said.
 std::string errors(const ErrorSum& sum, double percent) {
     const double count = count_of(sum);
-    return fmt::format("{:>9.1f}{:>9.1f}\n",
-                       percent * (sum.found - sum.truth) / count,
-                       percent * std::sqrt(std::max(sum.squares / count, 0.0)));
+    const double square = sum.squares / count;
+    const std::string rms = square < 0 ? "-" : fmt::format("{:.1f}", percent * std::sqrt(square));
+    return fmt::format("{:>9.1f}{:>9}\n", percent * (sum.found - sum.truth) / count, rms);
 }
 
 std::string row(std::string_view name, const ErrorSum& sum, double percent) {
@@ -31,15 +32,15 @@ std::string cause(std::string_view name, const ErrorSum& sum, double percent) {
 
 }  // namespace
 
-void ErrorSum::add(const glm::vec3& first,
-                   const glm::vec3& second,
-                   const glm::vec3& truth_first,
-                   const glm::vec3& truth_second) {
+void ErrorSum::add(const Guesses<glm::vec3>& guesses, const Guesses<glm::vec3>& truths) {
+    const glm::dvec3 first = glm::dvec3(guesses[0]) - glm::dvec3(truths[0]);
+    const glm::dvec3 second = glm::dvec3(guesses[1]) - glm::dvec3(truths[1]);
+    const glm::dvec3 shown(mean_of(guesses));
+    const glm::dvec3 right(mean_of(truths));
     for (glm::length_t c = 0; c < 3; ++c) {
-        found += static_cast<double>(first[c] + second[c]) / 2;
-        truth += static_cast<double>(truth_first[c] + truth_second[c]) / 2;
-        squares +=
-            static_cast<double>(first[c] - truth_first[c]) * static_cast<double>(second[c] - truth_second[c]);
+        found += shown[c];
+        truth += right[c];
+        squares += first[c] * second[c];
     }
     count += 3;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bakerd/picture/show.h"
+#include "bakerd/picture/true_probes.h"
 
 #include <glm/vec3.hpp>
 
@@ -18,11 +19,8 @@ struct ErrorSum {
     double found = 0, truth = 0, squares = 0;
     std::size_t count = 0;  // of channels
 
-    // Two independent guesses at each: the noise of both has no part in the mean of the product of errors.
-    void add(const glm::vec3& first,
-             const glm::vec3& second,
-             const glm::vec3& truth_first,
-             const glm::vec3& truth_second);
+    // Independent guesses: their noise has no part in the mean of the product of errors.
+    void add(const Guesses<glm::vec3>& guesses, const Guesses<glm::vec3>& truths);
     void add(const ErrorSum& other);
 };
 

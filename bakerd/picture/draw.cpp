@@ -95,41 +95,62 @@ class Drawing {
 
 }  // namespace
 
-std::size_t draw_steps(Size size) {
-    return 2 * size.height;
+std::size_t draw_steps(Show show, Size size) {
+    return is_light(show) ? 2 * size.height : size.height;
 }
 
 kit::Image draw(const Painter& painter, Size size, float exposure, const Progress& progress) {
     return Drawing(painter, size, exposure, progress).run();
 }
 
-float mean_luminance(const Painter& painter, const Camera& camera, const trace::Scene& scene) {
-    constexpr std::size_t columns = 64;
-    constexpr std::size_t rows = 36;
-    const glm::vec2 step = glm::vec2(camera.size().width, camera.size().height) / glm::vec2(columns, rows);
-    std::array<float, columns * rows> luminances{};
-    tbb::parallel_for(std::size_t{0}, luminances.size(), [&](std::size_t n) {
+namespace {
+
+constexpr std::size_t grid_columns = 64;
+constexpr std::size_t grid_rows = 36;
+
+// Calls use(n, pixel, point) for each surface that one of a grid of rays meets, of grid_columns x grid_rows.
+template <class Use>
+void for_each_surface(const Camera& camera, const trace::Scene& scene, const Use& use) {
+    const glm::vec2 step =
+        glm::vec2(camera.size().width, camera.size().height) / glm::vec2(grid_columns, grid_rows);
+    tbb::parallel_for(std::size_t{0}, grid_columns * grid_rows, [&](std::size_t n) {
         const trace::FloatMode float_mode;
-        const glm::vec2 pixel = (glm::vec2(n % columns, n / columns) + 0.5f) * step;
-        const auto point = surface_on(scene, camera, camera.ray(pixel));
-        if (point)
-            luminances[n] = map::luminance(painter.colour(pixel)) / std::sqrt(painter.brightness_of(*point));
+        const glm::vec2 pixel = (glm::vec2(n % grid_columns, n / grid_columns) + 0.5f) * step;
+        if (const auto point = surface_on(scene, camera, camera.ray(pixel)))
+            use(n, pixel, *point);
+    });
+}
+
+}  // namespace
+
+bool sees_anything(const Camera& camera, const trace::Scene& scene) {
+    std::atomic<bool> sees = false;
+    for_each_surface(camera, scene, [&](std::size_t, const glm::vec2&, const SurfacePoint&) { sees = true; });
+    return sees;
+}
+
+std::optional<double> brightness_log2(const Painter& painter,
+                                      const Camera& camera,
+                                      const trace::Scene& scene) {
+    std::array<float, grid_columns * grid_rows> luminances{};
+    for_each_surface(camera, scene, [&](std::size_t n, const glm::vec2& pixel, const SurfacePoint& point) {
+        luminances[n] = map::luminance(painter.colour(pixel)) / std::sqrt(painter.brightness_of(point));
     });
     // Many surfaces have next to nothing of one part of the light: a geometric mean would be next to nothing.
     const bool geometric = painter.shows_all();
     double sum = 0;
     std::size_t count = 0;
     for (const float luminance : luminances) {
-        if (!(luminance > 0))
+        if (!(luminance > 0) || !std::isfinite(luminance))
             continue;
         const auto value = static_cast<double>(luminance);
-        sum += geometric ? std::log(value) : value;
+        sum += geometric ? log2_of(value) : value;
         ++count;
     }
     if (count == 0)
-        return 0;
+        return std::nullopt;
     const double mean = sum / static_cast<double>(count);
-    return static_cast<float>(geometric ? std::exp(mean) : mean);
+    return geometric ? mean : log2_of(mean);
 }
 
 }  // namespace drtv::picture

@@ -19,8 +19,12 @@ namespace drtv::picture {
 // Writes a pixel of linear colour.
 void put_pixel(kit::Image& image, std::size_t x, std::size_t y, const glm::vec3& linear);
 
-// The EV at which surfaces of this mean (mean_luminance in draw.h) come out well; in quarters, so that it can
-// be said again on the command line.
-[[nodiscard]] float ev_for(float mean);
+// The EV at which surfaces of this brightness (brightness_log2 in draw.h) come out well; in quarters, so that
+// it can be said again on the command line.
+[[nodiscard]] float ev_for(double brightness_log2);
+
+// Logarithm to the base of 2, the same on every machine; the C library's own may differ in its last digit.
+// REQUIRES: finite, above 0.
+[[nodiscard]] double log2_of(double value);
 
 }  // namespace drtv::picture

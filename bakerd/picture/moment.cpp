@@ -3,23 +3,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include <array>
 #include <numbers>
 
 namespace drtv::picture {
 namespace {
 
 constexpr float sun_cosine = 1 - 0x1.8p-17f;  // of half its disc's angle, 0.274 degrees
-
-std::vector<LightShare> shares_of(const SectorSet& set, std::span<const PointLight> lamps) {
-    std::vector<LightShare> all;
-    for (const PointLight& lamp : lamps) {
-        std::array<LightShare, max_shares_per_light> shares;
-        const std::size_t count = split_light(set, lamp, shares);
-        all.insert(all.end(), shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(count));
-    }
-    return all;
-}
 
 VolumeSettings settings_of(const RelightChoice& choice) {
     VolumeSettings settings;
@@ -44,7 +33,7 @@ Moment::Moment(const SectorSet& set,
     : set_(set),
       light_(light),
       choice_(choice),
-      shares_(shares_of(set, light.lamps)),
+      shares_(kit::split_lamps(set, light.lamps)),
       relit_(set, light.light, shares_, settings_of(choice)),
       volume_(choice.by == By::volume ? &relit_.at(window) : nullptr),
       open_sky_(clamped(open_sky(light.light))) {}
@@ -61,7 +50,7 @@ Ambient Moment::ambient(const glm::vec3& at, const glm::vec3& normal) const {
 }
 
 glm::vec3 Moment::ambient_colour(const glm::vec3& at, const glm::vec3& normal) const {
-    const Double3 asked = as_place(at + normal * surface_offset_m);
+    const Double3 asked = as_place(asked_place(at, normal));
     BasisColours sum{};
     float outside = 1;
     if (choice_.interiors) {

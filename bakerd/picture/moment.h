@@ -18,6 +18,11 @@
 
 namespace drtv::picture {
 
+// Where a surface asks: surface_offset_m along its normal.
+[[nodiscard]] inline glm::vec3 asked_place(const glm::vec3& at, const glm::vec3& normal) {
+    return at + normal * surface_offset_m;
+}
+
 enum class By : std::uint8_t { nearest, trilinear, volume };
 
 struct RelightChoice {

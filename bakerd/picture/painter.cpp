@@ -73,6 +73,10 @@ glm::vec3 direct_light(const Scenery& scenery, const Moment& moment, const Surfa
     return light;
 }
 
+glm::vec3 sky_seen(const Scenery& scenery, const Moment& moment, const trace::Ray& ray, bool with_sun) {
+    return scenery.scene().passed(ray).tint * moment.sky(ray.direction, with_sun);
+}
+
 Painter::Painter(const Scenery& scenery, const Moment& moment, const Camera& camera, Show show)
     : scenery_(scenery), moment_(moment), camera_(camera), show_(show) {
     if (show == Show::probes)
@@ -85,7 +89,7 @@ glm::vec3 Painter::colour(glm::vec2 pixel) const {
     if (show_ == Show::probes)
         return with_spheres(ray, point, pixel);
     if (!point)
-        return show_ == Show::all ? moment_.sky(ray.direction, true) : glm::vec3(0);
+        return show_ == Show::all ? sky_seen(scenery_, moment_, ray, true) : glm::vec3(0);
     if (show_ == Show::all)
         return whole(*point);
     if (show_ == Show::ambient)
@@ -118,7 +122,7 @@ glm::vec3 Painter::with_spheres(const trace::Ray& ray,
     const auto sphere = spheres_->first_on(ray, pixel);
     if (sphere && (!point || sphere->distance_m < point->hit.distance_m))
         return sphere->radiance;
-    return dimmed * (point ? whole(*point) : moment_.sky(ray.direction, false));
+    return dimmed * (point ? whole(*point) : sky_seen(scenery_, moment_, ray, false));
 }
 
 glm::vec3 Painter::of_runtime(const SurfacePoint& point) const {
@@ -172,7 +176,8 @@ glm::vec3 Painter::leaks(const SurfacePoint& point) const {
     return shape_of(point) * glm::mix(glm::vec3(0.5f), glm::vec3(1, 0, 0), leak);
 }
 
-// As drtv_view_clipped of the shaders: red where a texel is at its encoding's end, blue where it holds a 0.
+// As drtv_view_clipped of the shaders: red where a texel is at its encoding's end, blue where it holds a 0;
+// nothing outside of the volume.
 glm::vec3 Painter::clipped(const SurfacePoint& point) const {
     const Volume& volume = *moment_.volume();
     Double3 middle = as_place(asked_place(point.at, point.hit.normal));
@@ -180,22 +185,21 @@ glm::vec3 Painter::clipped(const SurfacePoint& point) const {
         const double width = double{volume.settings().texel_m[axis]};
         middle[axis] = (std::floor(middle[axis] / width) + 0.5) * width;
     }
-    float most = 0;
-    float least = INFINITY;
-    float sum = 0;
-    for (const Float3& colour : volume.sample(middle).colours) {
-        for (const float channel : colour) {
-            most = std::max(most, channel);
-            least = std::min(least, channel);
-            sum += channel;
-        }
+    const Volume::Sample sample = volume.sample(middle);
+    if (!(sample.weight > 0))
+        return glm::vec3(0);
+    glm::vec3 most(0);
+    glm::vec3 least(INFINITY);
+    for (const Float3& colour : sample.colours) {
+        most = glm::max(most, as_vec(colour));
+        least = glm::min(least, as_vec(colour));
     }
     const bool is_half = volume.settings().encoding == TexelEncoding::rgba16f;
-    if (most >= 0.9995f * (is_half ? 65504.0f : volume.scale()))
+    if (map::brightest(most) >= 0.9995f * (is_half ? 65504.0f : volume.scale()))
         return {1, 0, 0};
-    if (least <= 0.00001f * volume.scale())
+    if (std::min({least.x, least.y, least.z}) <= 0.00001f * volume.scale())
         return {0, 0, 1};
-    return glm::vec3(std::min(1.0f, sum / 12 / volume.scale()));
+    return glm::vec3(std::min(1.0f, (most.x + most.y + most.z) / (3 * volume.scale())));
 }
 
 }  // namespace drtv::picture

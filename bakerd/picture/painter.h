@@ -16,11 +16,17 @@
 
 namespace drtv::picture {
 
-// The radiance of white light's part of a surface, by what is shown of it.
+// Of the ambient light what is shown: all, or a part.
 [[nodiscard]] glm::vec3 part_of(const Ambient& ambient, Show show);
 
 // What a surface sends back besides the ambient light: sun, lamps, and what it shines itself.
 [[nodiscard]] glm::vec3 direct_light(const Scenery& scenery, const Moment& moment, const SurfacePoint& point);
+
+// What a ray that meets nothing shows: the sky, in the colour of clear glass on the way.
+[[nodiscard]] glm::vec3 sky_seen(const Scenery& scenery,
+                                 const Moment& moment,
+                                 const trace::Ray& ray,
+                                 bool with_sun);
 
 // All arguments must outlive it. Thread-safe. REQUIRES of the callers: a FloatMode.
 class Painter {

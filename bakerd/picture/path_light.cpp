@@ -17,7 +17,7 @@ BasisColours colours_of(const PathBasis& basis, Show show) {
     BasisColours colours{};
     for (std::size_t b = 0; b < basis_count; ++b)
         colours[b] = as_float3(part_of(basis[b], show));
-    return clamped(colours);
+    return colours;
 }
 
 PathLight::PathLight(const Scenery& scenery, const Moment& moment, const PathSettings& settings)
@@ -36,19 +36,21 @@ PathParts PathLight::at_normal(const glm::vec3& place,
                                const glm::ivec3& seed) const {
     PathWalk walk(scene_, place, paths, seed);
     PathParts sum;
-    const auto cosine = [&](const glm::vec3& w) { return glm::dot(normal, w); };
-    const glm::vec3 share(1 / static_cast<float>(paths.count()));
+    const auto cosine = [&](const glm::vec3& w) { return std::max(glm::dot(normal, w), 0.0f); };
+    const auto density = [&](const glm::vec3& w) { return cosine(w) * inv_pi; };
+    const float share = 1 / static_cast<float>(paths.count());
+    const auto add = [&](const glm::vec3& w, const glm::vec3& light, float counts) {
+        sum.static_light += light * (counts * cosine(w));
+    };
     for (std::uint32_t path = 0; path < paths.count(); ++path) {
         const glm::vec3 w = bake::cosine_hemisphere(walk.first_numbers(path), normal);
-        const float density = std::max(cosine(w), 0.0f) * inv_pi;
-        if (!(density > 0))
+        if (!(density(w) > 0))
             continue;
-        sum.add(walk.radiance(path, w, density), share);
-        sum.static_light += share * walk.drawn(path, cosine, [&](const glm::vec3& other) {
-            return std::max(cosine(other), 0.0f) * inv_pi;
-        });
+        sum.add(walk.radiance(path, w, density(w)), glm::vec3(share));
+        walk.drawn(
+            path, density, [&](const glm::vec3& at, const glm::vec3& light) { add(at, light, share); });
     }
-    sum.static_light += walk.direct(cosine);
+    walk.direct([&](const glm::vec3& at, const glm::vec3& light) { add(at, light, 1); });
     return sum;
 }
 
@@ -59,21 +61,24 @@ PathBasis PathLight::at_basis(const glm::vec3& place,
     PathBasis sum{};
     constexpr float uniform = inv_pi / 4;
     const float share = 1 / static_cast<float>(paths.count());
-    const auto cosine_to = [](std::size_t b) {
-        return [n = as_vec(transfer_basis[b])](const glm::vec3& w) { return glm::dot(n, w); };
+    const auto cosine = [](std::size_t b, const glm::vec3& w) {
+        return std::max(glm::dot(as_vec(transfer_basis[b]), w), 0.0f);
+    };
+    const auto add = [&](const glm::vec3& w, const glm::vec3& light, float counts) {
+        for (std::size_t b = 0; b < basis_count; ++b)
+            sum[b].static_light += light * (counts * cosine(b, w));
     };
     for (std::uint32_t path = 0; path < paths.count(); ++path) {
         const glm::vec3 w = bake::uniform_sphere(walk.first_numbers(path));
         const PathParts radiance = walk.radiance(path, w, uniform);
-        for (std::size_t b = 0; b < basis_count; ++b) {
-            const auto cosine = cosine_to(b);
-            if (cosine(w) > 0)
-                sum[b].add(radiance, glm::vec3(4 * share * cosine(w)));
-            sum[b].static_light += share * walk.drawn(path, cosine, [](const glm::vec3&) { return uniform; });
-        }
+        for (std::size_t b = 0; b < basis_count; ++b)
+            sum[b].add(radiance, glm::vec3(4 * share * cosine(b, w)));
+        walk.drawn(
+            path,
+            [](const glm::vec3&) { return uniform; },
+            [&](const glm::vec3& at, const glm::vec3& light) { add(at, light, share); });
     }
-    for (std::size_t b = 0; b < basis_count; ++b)
-        sum[b].static_light += walk.direct(cosine_to(b));
+    walk.direct([&](const glm::vec3& at, const glm::vec3& light) { add(at, light, 1); });
     return sum;
 }
 

@@ -12,7 +12,7 @@
 namespace drtv::picture {
 
 using PathBasis = std::array<PathParts, basis_count>;
-// As a probe would show it.
+// As a probe would show it: of truth, nothing is below 0.
 [[nodiscard]] BasisColours colours_of(const PathBasis& basis, Show show);
 
 // Thread-safe. REQUIRES of all calls: a FloatMode. What is passed in must outlive it.

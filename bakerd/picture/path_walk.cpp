@@ -48,11 +48,11 @@ PathWalk::PathWalk(const PathScene& scene,
         events_.emplace_back(tracing_, set, place, scene.settings.reach_m);
 }
 
-PathParts PathWalk::radiance(std::uint32_t path_number, const glm::vec3& direction, float density) {
-    path_ = path_number;
+PathParts PathWalk::radiance(std::uint32_t number, const glm::vec3& direction, float density) const {
     const PathSettings& settings = scene_.settings;
     PathParts parts;
     State path;
+    path.number = number;
     path.ray = {place_, direction, settings.reach_m};
     path.density = density;
     for (;; ++path.bounce) {
@@ -103,7 +103,7 @@ void PathWalk::add_lights(PathParts& parts, const State& path, const SurfacePoin
         if (const std::optional<Incidence> sun = moment.sun())
             parts.sun_bounce += path.throughput * scattered(tracing_, point, *sun);
         for (std::size_t set = 0; set < events_.size(); ++set)
-            parts.static_light += path.throughput * scene_.factors[set] * of_set(set, point, path.bounce + 1);
+            parts.static_light += path.throughput * scene_.factors[set] * of_set(set, path, point);
     }
     if (path.bounce < scene_.settings.local_bounces) {
         for (const PointLight& lamp : moment.lamps())
@@ -111,14 +111,14 @@ void PathWalk::add_lights(PathParts& parts, const State& path, const SurfacePoin
     }
 }
 
-glm::vec3 PathWalk::of_set(std::size_t set, const SurfacePoint& point, std::uint32_t number) const {
+glm::vec3 PathWalk::of_set(std::size_t set, const State& path, const SurfacePoint& point) const {
     const bake::NextEvent& event = events_[set];
     glm::vec3 sum(0);
     for (const bake::Sun* sun : event.suns())
         sum += sent(event.towards(*sun, point.at), point);
     if (!event.has_drawn_lights())
         return sum;
-    const auto incident = event.draw(point.at, light_numbers(set, number), {});
+    const auto incident = event.draw(point.at, light_numbers(path.number, set, path.bounce + 1), {});
     if (!incident)
         return sum;
     glm::vec3 light = sent(*incident, point);
@@ -138,7 +138,7 @@ glm::vec3 PathWalk::sent(const bake::Incident& incident, const SurfacePoint& poi
 
 bool PathWalk::scatter(State& path, const SurfacePoint& point) const {
     const std::size_t dimension = 2 + 2 * std::size_t{path.bounce};
-    const glm::vec2 u = bake::shifted(paths_.point(path_), shift_, dimension);
+    const glm::vec2 u = bake::shifted(paths_.point(path.number), shift_, dimension);
     const auto next = bake::scatter(tracing_, path.ray, point.hit, point.surface, u);
     if (!next)
         return false;
@@ -149,11 +149,13 @@ bool PathWalk::scatter(State& path, const SurfacePoint& point) const {
     return true;
 }
 
-std::array<double, 3> PathWalk::light_numbers(std::size_t set, std::uint32_t point) const {
+std::array<double, 3> PathWalk::light_numbers(std::uint32_t path,
+                                              std::size_t set,
+                                              std::uint32_t point) const {
     std::array<double, 3> u{};
     for (std::uint32_t d = 0; d < u.size(); ++d) {
         const auto number = static_cast<std::uint32_t>(set) * 64 + point * 4 + d;
-        u[d] = static_cast<double>(bake::hashed(shift_[0], path_, number)) * 0x1p-32;
+        u[d] = static_cast<double>(bake::hashed(shift_[0], path, number)) * 0x1p-32;
     }
     return u;
 }

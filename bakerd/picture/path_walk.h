@@ -59,43 +59,39 @@ class PathWalk {
     }
 
     // What comes along one direction, which is drawn with that density.
-    [[nodiscard]] PathParts radiance(std::uint32_t path, const glm::vec3& direction, float density);
+    [[nodiscard]] PathParts radiance(std::uint32_t path, const glm::vec3& direction, float density) const;
 
-    // Of lamps and suns of the map, straight to the place: weight(direction) says how much one counts.
-    template <class Weight>
-    [[nodiscard]] glm::vec3 direct(const Weight& weight) const {
-        glm::vec3 sum(0);
+    // Of lamps and suns of the map, straight to the place. Calls use(direction, E/pi of what faces it).
+    template <class Use>
+    void direct(const Use& use) const {
         for (std::size_t set = 0; set < events_.size(); ++set) {
             const bake::NextEvent& event = events_[set];
             for (const bake::Sun* sun : event.suns())
-                sum += seen(event.towards(*sun, place_), weight) * scene_.factors[set];
+                use_seen(event.towards(*sun, place_), scene_.factors[set], use);
             for (const bake::PointLight* lamp : event.points())
-                sum += seen(event.towards(*lamp, place_), weight) * scene_.factors[set];
+                use_seen(event.towards(*lamp, place_), scene_.factors[set], use);
         }
-        return sum;
     }
 
     // Of glowing surfaces, drawn at the place: with paths that start with density(direction) they count both
-    // ways, by the balance heuristic.
-    template <class Weight, class Density>
-    [[nodiscard]] glm::vec3 drawn(std::uint32_t path, const Weight& weight, const Density& density) {
-        path_ = path;
-        glm::vec3 sum(0);
+    // ways, by the balance heuristic. Calls use(direction, E/pi of what faces it).
+    template <class Density, class Use>
+    void drawn(std::uint32_t path, const Density& density, const Use& use) const {
         for (std::size_t set = 0; set < events_.size(); ++set) {
             if (!events_[set].has_emissive())
                 continue;
-            const auto incident = events_[set].draw(place_, light_numbers(set, 0), {});
+            const auto incident = events_[set].draw(place_, light_numbers(path, set, 0), {});
             if (!incident || !(incident->density > 0))
                 continue;
             const float share = incident->density / (incident->density + density(incident->direction));
-            sum += seen(*incident, weight) * scene_.factors[set] * share;
+            use_seen(*incident, scene_.factors[set] * share, use);
         }
-        return sum;
     }
 
   private:
     // A path where it stands.
     struct State {
+        std::uint32_t number = 0;
         trace::Ray ray;
         glm::vec3 throughput{1};
         float density = 0;  // of the ray's direction
@@ -103,22 +99,23 @@ class PathWalk {
         std::uint32_t bounce = 0;
     };
 
-    template <class Weight>
-    [[nodiscard]] glm::vec3 seen(const bake::Incident& incident, const Weight& weight) const {
-        const float counts = weight(incident.direction);
-        if (!(counts > 0) || incident.light == glm::vec3(0))
-            return glm::vec3(0);
+    template <class Use>
+    void use_seen(const bake::Incident& incident, const glm::vec3& factor, const Use& use) const {
+        if (incident.light * factor == glm::vec3(0))
+            return;
         const trace::Ray ray = bake::NextEvent::shadow_ray(place_, incident);
-        return incident.light *
-               (counts * std::numbers::inv_pi_v<float>)*tracing_.share_seen(ray, incident.target.has_value());
+        const glm::vec3 share = tracing_.share_seen(ray, incident.target.has_value());
+        use(incident.direction, incident.light * factor * share * std::numbers::inv_pi_v<float>);
     }
 
-    [[nodiscard]] std::array<double, 3> light_numbers(std::size_t set, std::uint32_t point) const;
+    [[nodiscard]] std::array<double, 3> light_numbers(std::uint32_t path,
+                                                      std::size_t set,
+                                                      std::uint32_t point) const;
     void add_sky(PathParts& parts, const State& path) const;
     void add_emission(PathParts& parts, const State& path, const SurfacePoint& point) const;
     // What the surface sends on of all lights.
     void add_lights(PathParts& parts, const State& path, const SurfacePoint& point) const;
-    [[nodiscard]] glm::vec3 of_set(std::size_t set, const SurfacePoint& point, std::uint32_t number) const;
+    [[nodiscard]] glm::vec3 of_set(std::size_t set, const State& path, const SurfacePoint& point) const;
     [[nodiscard]] glm::vec3 sent(const bake::Incident& incident, const SurfacePoint& point) const;
     // Whether the path goes on.
     [[nodiscard]] bool scatter(State& path, const SurfacePoint& point) const;
@@ -129,7 +126,6 @@ class PathWalk {
     const bake::SampleTable& paths_;
     const std::array<std::uint32_t, bake::max_sample_dimensions> shift_;
     std::vector<bake::NextEvent> events_;  // by set of lights
-    std::uint32_t path_ = 0;
 };
 
 }  // namespace drtv::picture

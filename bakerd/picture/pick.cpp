@@ -33,7 +33,10 @@ void write_surface(kit::JsonWriter& json,
 
 }  // namespace
 
-Expected<std::string> picked(const Setting& setting, const Moment& moment, const std::string& pixel) {
+Expected<std::string> picked(const Setting& setting,
+                             const Moment& moment,
+                             const std::string& time,
+                             const std::string& pixel) {
     const trace::FloatMode float_mode;
     const Camera& camera = setting.camera();
     const Size size = camera.size();
@@ -51,6 +54,8 @@ Expected<std::string> picked(const Setting& setting, const Moment& moment, const
     const auto point = surface_on(setting.scenery().scene(), camera, camera.ray(middle));
     kit::JsonWriter json;
     json.begin_object().key("pixel").array(*numbers);
+    if (!time.empty())
+        json.member("time", time);
     if (point)
         write_surface(json, setting, moment, *point);
     return json.end_object().text();

@@ -8,10 +8,11 @@
 
 namespace drtv::picture {
 
-// As a JSON object. `pixel`: x,y from the upper left corner, from 0. Fails where the picture has no such
-// pixel.
+// As a JSON object, with the time where it is not empty. `pixel`: x,y from the upper left corner, from 0.
+// Fails where the picture has no such pixel.
 [[nodiscard]] Expected<std::string> picked(const Setting& setting,
                                            const Moment& moment,
+                                           const std::string& time,
                                            const std::string& pixel);
 
 }  // namespace drtv::picture

@@ -23,9 +23,4 @@ struct ProbeMix {
 
 [[nodiscard]] ProbeMix mix_at(const Moment& moment, const glm::vec3& at, const glm::vec3& normal);
 
-// Where a surface asks: surface_offset_m along its normal.
-[[nodiscard]] inline glm::vec3 asked_place(const glm::vec3& at, const glm::vec3& normal) {
-    return at + normal * surface_offset_m;
-}
-
 }  // namespace drtv::picture

@@ -33,13 +33,13 @@ void ProbeSpheres::add(const LoadedSector& sector,
     Sphere sphere;
     sphere.centre = as_vec(position_m(sector.view, probe));
     const std::optional<Camera::Shown> shown = camera.show(sphere.centre);
-    if (!shown || shown->distance_m > farthest_m)
+    if (!shown || (shown->distance_m > farthest_m && !camera.is_parallel()))
         return;
     const float pixel_m = camera.pixel_m(shown->distance_m);
     sphere.radius_m = std::max(radius_m, least_radius_pixels * pixel_m);
     sphere.colours = clamped(relight(sector.view, probe, moment.light()));
-    // Of a sphere near by, which is drawn out at the picture's sides.
-    const float reach = 2 * sphere.radius_m / pixel_m + 1;
+    constexpr float spare = 1.2f;  // near by, its outline is wider than its middle
+    const float reach = spare * camera.drawn_out(sphere.centre) * sphere.radius_m / pixel_m + 1;
     const auto tile_at = [](float pixel, std::size_t pixels) {
         const float inside = std::clamp(pixel, 0.0f, static_cast<float>(pixels - 1));
         return static_cast<std::size_t>(inside) / tile_pixels;

@@ -27,7 +27,7 @@ void add_view(CLI::App& command, RenderRequest& request) {
     look->needs(camera);
     CLI::Option* fov =
         command.add_option("--fov", request.fov_deg, "Degrees from the left side to the right")
-            ->check(CLI::Range(1.0f, 170.0f))
+            ->check(kit::number_between(1, 170))
             ->capture_default_str();
     CLI::Option* top = command.add_flag(
         "--top", request.top, "The map from above; the PNG says of which part of the world it is");
@@ -61,7 +61,7 @@ void add_picture(CLI::App& command, RenderRequest& request) {
     CLI::Option* compare = command.add_flag(
         "--compare", request.compare, "Beside path tracing, with errors by part; takes minutes");
     command.add_option("--paths", request.paths, "Of the path tracer, a pixel")
-        ->check(CLI::Range(2u, 65536u))
+        ->check(kit::whole_number(16, 65536))
         ->needs(compare)
         ->capture_default_str();
 }
@@ -69,7 +69,7 @@ void add_picture(CLI::App& command, RenderRequest& request) {
 }  // namespace
 
 void add_render(CLI::App& command, RenderRequest& request) {
-    command.add_option("DIR", request.folder, "A folder of sector files")->required();
+    command.add_option("DIR", request.folder, "A folder of sector files, or one; before --map")->required();
     command.add_option("--map", request.maps, "glTF files that they were baked of, or folders of these")
         ->required()
         ->type_name("MAP");
@@ -79,6 +79,7 @@ void add_render(CLI::App& command, RenderRequest& request) {
     kit::add_light(command, request.light);
     command.add_option("--times", request.times, "A sheet of pictures over the day: 06:00,12:00")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->excludes(command.get_option("--time"))
         ->excludes(command.get_option("--sun-direction"))
         ->excludes(command.get_option("--sky"))

@@ -1,6 +1,7 @@
 #include "bakerd/picture/setting.h"
 
 #include "bakerd/picture/ground_probes.h"
+#include "bakerd/picture/rectangle.h"
 #include "bakerd/picture/view_arguments.h"
 #include "bakerd/trace/device.h"
 #include "format/kit/files.h"
@@ -19,25 +20,6 @@ namespace {
 constexpr float sectors_m = 2048;
 constexpr float over_the_top_m = 1;
 
-Rectangle square_of(const LoadedSector& sector) {
-    const auto side = static_cast<float>(sector_size_m);
-    const glm::vec2 low = glm::vec2(sector.view.i, sector.view.j) * side;
-    return {low, low + side};
-}
-
-Rectangle extent_of(const SectorSet& set) {
-    Rectangle extent{glm::vec2(INFINITY), glm::vec2(-INFINITY)};
-    kit::for_each_sector(set, [&](const LoadedSector& sector) {
-        const Rectangle square = square_of(sector);
-        extent = {glm::min(extent.low, square.low), glm::max(extent.high, square.high)};
-    });
-    return extent;
-}
-
-bool overlap(const Rectangle& a, const Rectangle& b) {
-    return glm::all(glm::lessThan(a.low, b.high)) && glm::all(glm::lessThan(b.low, a.high));
-}
-
 // The picture's shape around a part of the world.
 Rectangle widened(const Rectangle& world, Size size) {
     const glm::vec2 middle = (world.low + world.high) / 2.0f;
@@ -53,6 +35,8 @@ Expected<std::unique_ptr<const Setting>> Setting::open(const RenderRequest& requ
     std::unique_ptr<Setting> setting(new Setting(request));
     if (auto done = setting->read_choices(); !done)
         return tl::unexpected(done.error());
+    if (!kit::sector_files(request.folder))
+        return failed(kit::exit_unreadable, {});  // has been told
     auto map = read_map(request.maps);
     if (!map)
         return tl::unexpected(map.error());
@@ -65,15 +49,15 @@ Expected<std::unique_ptr<const Setting>> Setting::open(const RenderRequest& requ
         if (auto done = setting->read_bake_settings(); !done)
             return tl::unexpected(done.error());
     }
-    const glm::vec2 around =
-        setting->asked_ ? glm::vec2(setting->asked_->eye) : glm::vec2(bounds.low + bounds.high) / 2.0f;
-    auto scenery = Scenery::build(*map, around);
+    const Rectangle wanted = setting->wanted_of(bounds);
+    auto scenery = Scenery::build(*map, (wanted.low + wanted.high) / 2.0f);
     if (!scenery)
         return tl::unexpected(scenery.error());
     setting->scenery_ = std::move(*scenery);
     if (auto done = setting->place_camera(bounds); !done)
         return tl::unexpected(done.error());
-    setting->warn_of_other_map();
+    if (auto done = setting->check_map(); !done)
+        return tl::unexpected(done.error());
     return setting;
 }
 
@@ -86,14 +70,21 @@ Expected<void> Setting::read_choices() {
     if (!view)
         return tl::unexpected(view.error());
     asked_ = *view;
+    const auto region = read_region(request_.region);
+    if (!region)
+        return tl::unexpected(region.error());
+    region_ = *region;
     show_ = show_of(request_.show);
     const std::string by = request_.by.value_or(request_.top ? "trilinear" : "volume");
     choice_.by = by == "nearest" ? By::nearest : by == "trilinear" ? By::trilinear : By::volume;
     const std::string encoding = request_.encoding.value_or(show_ == Show::clipped ? "rgba8" : "rgba16f");
-    choice_.encoding = encoding == "rgba8"        ? TexelEncoding::rgba8
-                       : encoding == "rgba8-sqrt" ? TexelEncoding::rgba8_sqrt
-                                                  : TexelEncoding::rgba16f;
+    choice_.encoding = kit::encoding_of(encoding);
     choice_.interiors = request_.interiors;
+    if (request_.compare && (!is_light(show_) || show_ == Show::probes))
+        return failed(
+            kit::exit_usage,
+            fmt::format("render: --compare goes with light, all or a part of it, not with --show {}",
+                        request_.show));
     const bool needs_volume = show_ == Show::clipped || show_ == Show::age;
     if (choice_.by != By::volume && (needs_volume || request_.encoding))
         return failed(kit::exit_usage,
@@ -102,26 +93,39 @@ Expected<void> Setting::read_choices() {
     return {};
 }
 
-Expected<void> Setting::load_sectors(const map::Bounds& bounds) {
-    const auto region = read_region(request_.region);
-    if (!region)
-        return tl::unexpected(region.error());
-    Rectangle wanted{bounds.low, bounds.high};
+// Around a place where there are sectors: a map may be baked in a corner only.
+Rectangle Setting::wanted_of(const map::Bounds& bounds) const {
     if (asked_)
-        wanted = {glm::vec2(asked_->eye), glm::vec2(asked_->eye)};
-    else if (*region)
-        wanted = **region;
-    else if (!request_.top)
-        wanted = {(wanted.low + wanted.high) / 2.0f, (wanted.low + wanted.high) / 2.0f};
+        return {glm::vec2(asked_->eye), glm::vec2(asked_->eye)};
+    if (region_)
+        return *region_;
+    if (request_.top)
+        return {bounds.low, bounds.high};
+    const glm::vec2 middle = glm::vec2(bounds.low + bounds.high) / 2.0f;
+    const auto nearest = kit::nearest_sector(request_.folder, middle.x, middle.y);
+    const auto side = static_cast<float>(sector_size_m);
+    const glm::vec2 around = nearest ? (glm::vec2(nearest->first, nearest->second) + 0.5f) * side : middle;
+    return {around, around};
+}
+
+Expected<void> Setting::load_around(const Rectangle& wanted) {
     const glm::dvec2 low(wanted.low - sectors_m);
     const glm::dvec2 high(wanted.high + sectors_m);
-    const int code = folder_.load(request_.folder, kit::WorldSquare{low.x, low.y, high.x, high.y});
+    folder_ = std::make_unique<kit::SectorFolder>();
+    const int code = folder_->load(request_.folder, kit::WorldSquare{low.x, low.y, high.x, high.y});
     if (code != kit::exit_valid)
         return failed(static_cast<kit::ExitCode>(code), {});  // and has been told
+    return {};
+}
+
+Expected<void> Setting::load_sectors(const map::Bounds& bounds) {
+    const Rectangle wanted = wanted_of(bounds);
+    if (auto done = load_around(wanted); !done)
+        return done;
     const Rectangle map{bounds.low, bounds.high};
     std::size_t count = 0;
     bool fits = false;
-    kit::for_each_sector(folder_.set(), [&](const LoadedSector& sector) {
+    kit::for_each_sector(folder_->set(), [&](const LoadedSector& sector) {
         ++count;
         fits = fits || overlap(square_of(sector), map);
     });
@@ -140,7 +144,7 @@ Expected<void> Setting::load_sectors(const map::Bounds& bounds) {
                                   (wanted.low.x + wanted.high.x) / 2,
                                   (wanted.low.y + wanted.high.y) / 2,
                                   where));
-    const Rectangle sectors = extent_of(folder_.set());
+    const Rectangle sectors = extent_of(folder_->set());
     return failed(
         kit::exit_invalid,
         fmt::format("the sectors of {} lie at x {:.0f} to {:.0f}, y {:.0f} to {:.0f}, but {}: they are "
@@ -161,24 +165,29 @@ Expected<void> Setting::read_bake_settings() {
     if (!sector)
         return failed(static_cast<kit::ExitCode>(code), {});
     bake_.bounces = sector->bake.bounces;
+    if (sector->convergence && sector->convergence->local_bounces > 0)
+        bake_.local_bounces = sector->convergence->local_bounces;
     bake_.reach_m = sector->bake.reach_m;
     return {};
 }
 
 Expected<void> Setting::place_camera(const map::Bounds& bounds) {
     if (request_.top) {
-        const auto region = read_region(request_.region);
-        world_ = widened(*region ? **region : extent_of(folder_.set()), size_);
+        world_ = widened(region_ ? *region_ : extent_of(folder_->set()), size_);
         camera_ = Camera::above(world_, bounds.high.z + over_the_top_m, size_);
         return {};
     }
     std::optional<View> view = asked_;
     if (!view) {
-        view_ = view_by_rule(scenery_->scene(), folder_.set());
+        view_ = view_by_rule(scenery_->scene(), folder_->set());
         // So that it is the same when it is said on the command line.
         if (view_)
             view_ = View{in_millimetres(view_->eye), in_millimetres(view_->look)};
         view = view_;
+        // Those that the same view would load on the command line.
+        const glm::vec2 eye = view ? glm::vec2(view->eye) : glm::vec2(0);
+        if (auto done = view ? load_around({eye, eye}) : Expected<void>(); !done)
+            return done;
     }
     if (!view)
         return failed(kit::exit_invalid,
@@ -209,24 +218,26 @@ Expected<void> Setting::check_camera() const {
 }
 
 // Probes stand over ground: where there is none, it is another map, or not all of it.
-void Setting::warn_of_other_map() const {
+Expected<void> Setting::check_map() const {
     const trace::FloatMode float_mode;
     constexpr float ground_m = 1.5f;
     constexpr std::size_t most_asked = 256;
     std::vector<glm::vec3> probes;
-    for_each_ground_probe(folder_.set(), [&](const glm::vec3& place) { probes.push_back(place); });
+    for_each_ground_probe(folder_->set(), [&](const glm::vec3& place) { probes.push_back(place); });
     const std::size_t step = probes.size() / most_asked + 1;
     std::size_t asked = 0, over_nothing = 0;
     for (std::size_t n = 0; n < probes.size(); n += step) {
         ++asked;
         over_nothing += scenery_->scene().closest({probes[n], {0, 0, -1}, ground_m}) ? 0u : 1u;
     }
-    if (2 * over_nothing > asked)
-        kit::complain(
-            fmt::format("warning: {} % of the probes stand over no ground of this map: is it the one "
-                        "that {} was baked of?",
-                        100 * over_nothing / asked,
-                        request_.folder));
+    if (2 * over_nothing <= asked)
+        return {};
+    const std::string sentence = fmt::format(
+        "{} of {} probes of {} stand over no ground of the map", over_nothing, asked, request_.folder);
+    if (over_nothing == asked)
+        return failed(kit::exit_invalid, sentence + ": they are of another map");
+    kit::complain("warning: " + sentence + ": is it the one that they were baked of?");
+    return {};
 }
 
 }  // namespace drtv::picture

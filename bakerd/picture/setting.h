@@ -21,7 +21,7 @@ class Setting {
     // Fails with a sentence where something does not fit together.
     [[nodiscard]] static Expected<std::unique_ptr<const Setting>> open(const RenderRequest& request);
 
-    [[nodiscard]] const SectorSet& sectors() const { return folder_.set(); }
+    [[nodiscard]] const SectorSet& sectors() const { return folder_->set(); }
     [[nodiscard]] const Scenery& scenery() const { return *scenery_; }
     [[nodiscard]] const Camera& camera() const { return *camera_; }
     [[nodiscard]] const RelightChoice& choice() const { return choice_; }
@@ -40,16 +40,20 @@ class Setting {
     [[nodiscard]] Expected<void> read_choices();
     [[nodiscard]] Expected<void> read_bake_settings();
     [[nodiscard]] Expected<void> load_sectors(const map::Bounds& bounds);
+    [[nodiscard]] Expected<void> load_around(const Rectangle& wanted);
+    [[nodiscard]] Rectangle wanted_of(const map::Bounds& bounds) const;
     [[nodiscard]] Expected<void> place_camera(const map::Bounds& bounds);
     [[nodiscard]] Expected<void> check_camera() const;
-    void warn_of_other_map() const;
+    [[nodiscard]] Expected<void> check_map() const;
 
     const RenderRequest& request_;
     Size size_;
-    std::optional<View> asked_;  // on the command line
+    // On the command line.
+    std::optional<View> asked_;
+    std::optional<Rectangle> region_;
     Show show_ = Show::all;
     RelightChoice choice_;
-    kit::SectorFolder folder_;
+    std::unique_ptr<kit::SectorFolder> folder_;
     PathSettings bake_;
     std::unique_ptr<const Scenery> scenery_;
     std::optional<Camera> camera_;

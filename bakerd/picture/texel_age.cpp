@@ -23,6 +23,7 @@ TexelAge::TexelAge(const SectorSet& set,
 
 void TexelAge::note(const Volume& volume, int frame) {
     const auto& size = settings_.size;
+    window_ = volume.window();
     for (const TextureBox& box : volume.dirty()) {
         for (std::int32_t z = box.offset[2]; z < box.offset[2] + box.size[2]; ++z) {
             for (std::int32_t y = box.offset[1]; y < box.offset[1] + box.size[1]; ++y) {
@@ -39,6 +40,8 @@ int TexelAge::frames_at(const glm::vec3& place) const {
         const auto n = static_cast<std::size_t>(axis);
         const auto of_world = static_cast<std::int32_t>(std::floor(place[axis] / settings_.texel_m[n]));
         const std::int32_t count = settings_.size[n];
+        if (of_world < window_[n] || of_world >= window_[n] + count)
+            return frames;
         texel[n] = (of_world % count + count) % count;
     }
     const auto index =

@@ -5,6 +5,7 @@
 
 #include <drtv/volume.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,14 +23,15 @@ class TexelAge {
              const glm::vec3& eye,
              const glm::vec3& forward);
 
-    // Frames since the texel of a place was written, at most `frames`.
+    // Frames since the texel of a place was written, at most `frames`; outside of the volume as many.
     [[nodiscard]] int frames_at(const glm::vec3& place) const;
 
   private:
     void note(const Volume& volume, int frame);
 
     VolumeSettings settings_;
-    std::vector<std::int32_t> written_;  // the frame, by place in the texture
+    std::array<std::int32_t, 3> window_{};  // where the walk ends: its lowest texel of the world
+    std::vector<std::int32_t> written_;     // the frame, by place in the texture
 };
 
 }  // namespace drtv::picture

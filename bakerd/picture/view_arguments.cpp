@@ -4,22 +4,29 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <vector>
 
 namespace drtv::picture {
 namespace {
 
 constexpr std::size_t max_side = 16384;  // pixels
-constexpr std::size_t max_pixels = std::size_t{64} << 20;
+
+constexpr float least_look_m = 0.001f;
+constexpr double least_side_m = 1;
+
+bool are_in_world(const std::vector<double>& metres) {
+    constexpr double farthest_m = 2e6;
+    return std::ranges::all_of(metres, [](double n) { return std::abs(n) <= farthest_m; });
+}
 
 Expected<glm::vec3> read_place(const std::string& text, const char* option) {
     const auto numbers = kit::number_list(text, 3);
-    const bool in_world =
-        numbers && std::ranges::all_of(*numbers, [](double n) { return std::abs(n) <= 2e6; });
-    if (!in_world)
+    if (!numbers || !are_in_world(*numbers))
         return failed(kit::exit_usage,
                       fmt::format("render: {} takes x,y,z in metres, not \"{}\"", option, text));
     return glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
@@ -54,7 +61,7 @@ Expected<std::optional<View>> read_view(const RenderRequest& request) {
     const auto look = read_place(*request.look, "--look");
     if (!look)
         return tl::unexpected(look.error());
-    if (*eye == *look)
+    if (glm::distance(*eye, *look) < least_look_m)
         return failed(kit::exit_usage, "render: --look is the camera's own place");
     return std::optional<View>({*eye, *look});
 }
@@ -63,8 +70,14 @@ Expected<std::optional<Rectangle>> read_region(const std::optional<std::string>&
     if (!text)
         return std::optional<Rectangle>();
     const auto n = kit::number_list(*text, 4);
-    if (!n || !((*n)[0] < (*n)[2] && (*n)[1] < (*n)[3]))
-        return failed(kit::exit_usage, fmt::format("render: --region takes X0,Y0,X1,Y1, not \"{}\"", *text));
+    const bool fits =
+        n && are_in_world(*n) && (*n)[2] - (*n)[0] >= least_side_m && (*n)[3] - (*n)[1] >= least_side_m;
+    if (!fits)
+        return failed(
+            kit::exit_usage,
+            fmt::format("render: --region takes X0,Y0,X1,Y1 of the world, at least {} m a side, not \"{}\"",
+                        least_side_m,
+                        *text));
     return std::optional<Rectangle>({glm::vec2((*n)[0], (*n)[1]), glm::vec2((*n)[2], (*n)[3])});
 }
 

@@ -2,6 +2,7 @@
 
 #include "bakerd/map/cos_sin.h"
 #include "bakerd/picture/camera.h"
+#include "bakerd/picture/film.h"
 #include "bakerd/picture/ground_probes.h"
 #include "bakerd/trace/device.h"
 
@@ -21,7 +22,7 @@ constexpr float least_distance_m = 2;
 constexpr float most_sky = 0.6f;
 constexpr std::size_t least_objects = 3;
 constexpr float wanted_sky = 0.3f;
-constexpr float near_log2 = 2.5f;  // 5.7 m
+constexpr float near_log2 = 3;  // 8 m
 constexpr std::size_t most_eyes = 240;
 constexpr std::size_t ways = 12;
 constexpr Size grid = {24, 14};  // rays of a view
@@ -59,7 +60,7 @@ class Looking {
             if (hit->distance_m < least_distance_m || scene_.surface(*hit, 1).absorbs)
                 return {view, -INFINITY};
             objects_.push_back(scene_.object_index(hit->instance));
-            depths_.push_back(std::log2(hit->distance_m));
+            depths_.push_back(static_cast<float>(log2_of(static_cast<double>(hit->distance_m))));
         }
         return {view, score()};
     }
@@ -82,9 +83,9 @@ class Looking {
         // What looks alike all over says little, however many objects there are: entropy, in bits.
         float variety = 0;
         for (const float share : shares)
-            variety -= share * std::log2(share);
+            variety -= share * static_cast<float>(log2_of(static_cast<double>(share)));
         const float worth = std::min(variety, 6.0f) / 3 + std::min(std::sqrt(spread), 2.0f) / 2 -
-                            1.5f * std::abs(sky - wanted_sky) - near;
+                            1.5f * std::abs(sky - wanted_sky) - 2 * near;
         const bool is_good = sky <= most_sky && shares.size() >= least_objects;
         return is_good ? worth : worth - 10;
     }

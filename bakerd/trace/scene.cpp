@@ -13,6 +13,7 @@ namespace drtv::trace {
 namespace {
 
 Intersection intersection_of(const Candidate& hit, const Scene& scene, const Ray& ray) {
+    // It is met: what was sure lies ahead of the start by more than Embree's rays were moved beside the line.
     return hit.at ? *hit.at
                   : *intersect(
                         ray, scene.world_from_object(hit.id.instance), corners_of(*hit.set, hit.id.triangle));

@@ -127,6 +127,31 @@ std::string write_file(const std::string& link, const FileBytes& bytes) {
     return error;
 }
 
+std::string png_target_problem(const std::string& path) {
+    constexpr std::array<std::uint8_t, 8> signature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+    std::error_code code;
+    if (fs::is_directory(path, code))
+        return path + " is a folder, not a file";
+    const fs::path folder = fs::absolute(path, code).parent_path();
+    if (!fs::is_directory(folder, code))
+        return "cannot write " + path + ": there is no folder " + folder.string();
+    if (!fs::is_regular_file(path, code) || fs::file_size(path, code) == 0)
+        return {};
+    std::array<std::uint8_t, signature.size()> head{};
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (file == nullptr)
+        return {};
+    const bool whole = std::fread(head.data(), 1, head.size(), file) == head.size();
+    std::fclose(file);
+    return whole && head == signature ? std::string()
+                                      : path + " is there and no PNG file: it is not replaced";
+}
+
+std::string write_png_file(const std::string& path, const FileBytes& png) {
+    const std::string problem = png_target_problem(path);
+    return problem.empty() ? write_file(path, png) : problem;
+}
+
 std::string format_version(std::span<const std::uint8_t> bytes) {
     const auto number = [&](std::size_t at) {
         const unsigned low = bytes[at];

@@ -41,6 +41,12 @@ struct TextRead {
 // fails: also for what is there and no regular file.
 [[nodiscard]] std::string write_file(const std::string& path, const FileBytes& bytes);
 
+// The same of a picture. What is there and no PNG file is not replaced.
+[[nodiscard]] std::string write_png_file(const std::string& path, const FileBytes& png);
+
+// Why a picture could not be written there, before it is made; empty where nothing speaks against it.
+[[nodiscard]] std::string png_target_problem(const std::string& path);
+
 // "1.0" from the header of a sector file. REQUIRES: the file was read without error.
 [[nodiscard]] std::string format_version(std::span<const std::uint8_t> bytes);
 

@@ -28,6 +28,17 @@ CLI::Validator whole_number(std::size_t min, std::size_t max) {
     return {check, ""};
 }
 
+CLI::Validator number_between(double min, double max) {
+    const auto check = [=](const std::string& text) {
+        double number = 0;
+        if (CLI::detail::lexical_cast(text, number) && number >= min && number <= max)
+            return std::string();
+        return "takes a number from " + CLI::detail::to_string(min) + " to " + CLI::detail::to_string(max) +
+               ", not \"" + text + "\"";
+    };
+    return {check, ""};
+}
+
 CLI::Validator number_below(double max) {
     const auto check = [=](const std::string& text) {
         double number = 0;

@@ -14,6 +14,7 @@ namespace drtv::kit {
 
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& words);
 [[nodiscard]] CLI::Validator whole_number(std::size_t min, std::size_t max);
+[[nodiscard]] CLI::Validator number_between(double min, double max);
 // Above 0 and below `max`.
 [[nodiscard]] CLI::Validator number_below(double max);
 [[nodiscard]] CLI::Validator finite_number();

@@ -33,6 +33,21 @@ std::set<Place> wanted(const std::vector<Double3>& places) {
 
 }  // namespace
 
+std::optional<std::pair<std::int32_t, std::int32_t>> nearest_sector(const std::string& path,
+                                                                    double x,
+                                                                    double y) {
+    const auto distance_to = [=](const Place& place) {
+        return std::hypot((place.first + 0.5) * sector_size_m - x, (place.second + 0.5) * sector_size_m - y);
+    };
+    std::optional<Place> nearest;
+    for (const std::string& file : sector_files(path).value_or(FilePaths())) {
+        const auto place = sector_of_file(file);
+        if (place && (!nearest || distance_to(*place) < distance_to(*nearest)))
+            nearest = place;
+    }
+    return nearest;
+}
+
 template <class IsWanted>
 int SectorFolder::load_if(const std::string& path, const IsWanted& is_wanted) {
     const auto files = sector_files(path);

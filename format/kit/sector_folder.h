@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace drtv::kit {
@@ -19,6 +21,12 @@ void for_each_sector(const SectorSet& set, const Use& use) {
             use(*sector);
     }
 }
+
+// The sector (i, j) whose middle lies nearest to a place, of those that the files' headers name; nothing
+// where there is none. Reads no more of them.
+[[nodiscard]] std::optional<std::pair<std::int32_t, std::int32_t>> nearest_sector(const std::string& path,
+                                                                                  double x,
+                                                                                  double y);
 
 // Half open.
 struct WorldSquare {

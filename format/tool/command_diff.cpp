@@ -134,7 +134,7 @@ int write_picture(const RegionPicture& picture, const DiffRequest& request) {
     const auto image = draw(picture, request.metres_per_pixel);
     if (!image)
         return kit::exit_usage;
-    const std::string error = kit::write_file(*request.png, kit::encode_png(*image));
+    const std::string error = kit::write_png_file(*request.png, kit::encode_png(*image));
     if (!error.empty()) {
         kit::complain(error);
         return kit::exit_unreadable;

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -50,6 +52,11 @@ int run_preview(const PreviewRequest& request) {
         });
     }
     std::optional<Underlay> under;
+    std::error_code code;
+    if (request.under && std::filesystem::equivalent(*request.under, request.out, code)) {
+        kit::complain("preview: --out would replace the picture of --under, " + *request.under);
+        return kit::exit_usage;
+    }
     if (request.under) {
         int exit_code = kit::exit_valid;
         under = Underlay::read(*request.under, exit_code);
@@ -59,7 +66,9 @@ int run_preview(const PreviewRequest& request) {
     const auto image = draw(picture, request.metres_per_pixel, under ? &*under : nullptr);
     if (!image)
         return kit::exit_usage;
-    const std::string error = kit::write_file(request.out, kit::encode_png(*image));
+    const kit::FileBytes png = kit::encode_png(*image);
+    const std::string error =
+        png.empty() ? "memory is too short for the picture" : kit::write_png_file(request.out, png);
     if (!error.empty()) {
         kit::complain(error);
         return kit::exit_unreadable;

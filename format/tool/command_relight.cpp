@@ -113,33 +113,10 @@ bool read_camera(const RelightRequest& request, std::optional<Double3>& camera) 
     return true;
 }
 
-template <class Has>
-bool any_sector(const SectorSet& set, const Has& has) {
-    bool any = false;
-    kit::for_each_sector(set, [&](const LoadedSector& sector) { any = any || has(sector.view); });
-    return any;
-}
-
-// Light that no loaded sector takes is hardly meant; others may, so it is no error.
-void warn_of_lost_light(const SectorSet& set, const kit::RequestedLight& requested) {
-    const std::string none = "warning: none of the sectors around the places has ";
-    for (const std::string& name : requested.names) {
-        if (!any_sector(set,
-                        [&](const SectorView& view) { return find_light_group(view, name).has_value(); }))
-            kit::complain(none + "a light group \"" + name + "\"");
-    }
-    const auto takes_lamps = [](const SectorView& view) { return !view.local_receivers.empty(); };
-    if (!requested.lamps.empty() && !any_sector(set, takes_lamps))
-        kit::complain(none + "local transfer: lamps bring nothing");
-}
-
 VolumeSettings volume_settings(const RelightRequest& request) {
     VolumeSettings settings;
-    const std::string& encoding = request.encoding;
     settings.outdoors = request.interiors;
-    settings.encoding = encoding == "rgba8"        ? TexelEncoding::rgba8
-                        : encoding == "rgba8-sqrt" ? TexelEncoding::rgba8_sqrt
-                                                   : TexelEncoding::rgba16f;
+    settings.encoding = kit::encoding_of(request.encoding);
     return settings;
 }
 
@@ -168,13 +145,8 @@ int run_relight(const RelightRequest& request) {
         return exit_code;
 
     const SectorSet& set = folder.set();
-    warn_of_lost_light(set, requested);
-    std::vector<LightShare> lamps;
-    for (const PointLight& lamp : requested.lamps) {
-        std::array<LightShare, max_shares_per_light> shares;
-        const std::size_t count = split_light(set, lamp, shares);
-        lamps.insert(lamps.end(), shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(count));
-    }
+    kit::warn_of_lost_light(set, requested, "around the places");
+    const std::vector<LightShare> lamps = kit::split_lamps(set, requested.lamps);
     std::optional<kit::RelitVolume> volume;
     if (request.by == "volume")
         volume.emplace(set, requested.light, lamps, volume_settings(request));

@@ -14,6 +14,9 @@
 #include <cstring>
 #include <functional>
 #include <random>
+#include <span>
+#include <string>
+#include <vector>
 
 namespace drtv::kit {
 namespace {
@@ -63,6 +66,44 @@ TEST(PngWriter, SmoothPictureIsReadBackAndSmall) {
         return static_cast<std::uint8_t>(x / 4 + y / 8 + 20 * c);
     });
     EXPECT_LT(expect_read_back(image), image.rgb.size() / 20);
+}
+
+TEST(PngTexts, AreReadBackAndShowNothing) {
+    const Image image =
+        paint(9, 4, [](auto x, auto y, auto c) { return static_cast<std::uint8_t>(x * y + c); });
+    const std::vector<std::uint8_t> png = encode_png(image, {{"one", "1,2.5"}, {"two", ""}});
+    EXPECT_EQ(png_text(png, "one"), "1,2.5");
+    EXPECT_EQ(png_text(png, "two"), "");
+    EXPECT_FALSE(png_text(png, "three"));
+    EXPECT_FALSE(png_text(png, "on"));
+    EXPECT_FALSE(png_text(encode_png(image), "one"));
+    std::string why;
+    const auto decoded = decode_png(png, why);
+    ASSERT_TRUE(decoded) << why;
+    EXPECT_EQ(decoded->rgb, image.rgb);
+}
+
+TEST(PngDecoder, AnyPrefixAndAnyChangedByteIsDefined) {
+    const Image image =
+        paint(7, 5, [](auto x, auto y, auto c) { return static_cast<std::uint8_t>(31 * x + y + 7 * c); });
+    const std::vector<std::uint8_t> png = encode_png(image, {{"key", "text"}});
+    std::string why;
+    for (std::size_t size = 0; size < png.size(); ++size) {
+        const std::span<const std::uint8_t> part(png.data(), size);
+        why.clear();
+        const bool is_read = decode_png(part, why).has_value();
+        EXPECT_TRUE(is_read || !why.empty());
+        (void)png_text(part, "key");
+    }
+    for (std::size_t at = 0; at < png.size(); ++at) {
+        std::vector<std::uint8_t> changed = png;
+        for (const int value : {0, 1, 127, 255}) {
+            changed[at] = static_cast<std::uint8_t>(value);
+            (void)decode_png(changed, why);
+            (void)png_text(changed, "key");
+        }
+    }
+    EXPECT_FALSE(decode_png({}, why));
 }
 
 }  // namespace

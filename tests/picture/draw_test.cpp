@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <span>
 
 namespace drtv::test {
 namespace {
@@ -71,7 +72,8 @@ TEST(Draw, CountsItsSteps) {
         while (before < done && !last.compare_exchange_weak(before, done)) {
         }
     });
-    EXPECT_EQ(last, draw_steps(size));
+    EXPECT_EQ(last, draw_steps(Show::all, size));
+    EXPECT_EQ(draw_steps(Show::leaks, size), size.height);
 }
 
 TEST(Caption, WritesInsideOfThePicture) {
@@ -79,9 +81,13 @@ TEST(Caption, WritesInsideOfThePicture) {
     picture::write_caption(image, 4, 4, "06:30");
     EXPECT_GT(std::ranges::count(image.rgb, 235), 100);
     EXPECT_EQ(image.at(0, 0)[0], 0);
-    // What does not fit is cut.
-    picture::write_caption(image, 50, 25, "a long text that goes on and on");
+    // What does not fit is cut, and changes nothing elsewhere.
+    const kit::Image before = image;
     picture::write_caption(image, 100, 100, "outside");
+    EXPECT_EQ(image.rgb, before.rgb);
+    picture::write_caption(image, 50, 25, "a long text that goes on and on");
+    EXPECT_TRUE(std::ranges::equal(std::span(before.rgb).first(25 * 60 * 3),
+                                   std::span(image.rgb).first(25 * 60 * 3)));
 }
 
 }  // namespace

@@ -45,11 +45,19 @@ TEST(Film, ExposureDoublesByTheStop) {
     EXPECT_NEAR(picture::exposure_of(0.5f), std::sqrt(2.0f), 1e-6f);
     // Twice the light takes one stop less.
     for (const float mean : {0.001f, 0.3f, 70.0f}) {
-        const float ev = picture::ev_for(mean);
+        const float ev = picture::ev_for(picture::log2_of(static_cast<double>(mean)));
         EXPECT_EQ(ev * 4, std::round(ev * 4));
-        EXPECT_EQ(picture::ev_for(2 * mean), ev - 1);
+        EXPECT_EQ(picture::ev_for(picture::log2_of(static_cast<double>(2 * mean))), ev - 1);
         EXPECT_NEAR(mean * picture::exposure_of(ev), 0.32f, 0.32f * 0.1f);
     }
+}
+
+TEST(Film, LogarithmIsTheLibrarys) {
+    for (double x = 1e-30; x < 1e30; x *= 1.37)
+        EXPECT_NEAR(picture::log2_of(x), std::log2(x), 1e-13 * std::max(1.0, std::abs(std::log2(x)))) << x;
+    for (int n = -40; n < 40; ++n)
+        EXPECT_NEAR(picture::exposure_of(static_cast<float>(n) * 0.125f), std::exp2(n * 0.125),
+                    1e-6 * std::exp2(n * 0.125));
 }
 
 TEST(Srgb, AgreesWithTheFormula) {

@@ -73,6 +73,7 @@ TEST(ProbeMix, SharesMakeWhatTheRuntimeBlends) {
     const SectorSet& set = baked_yard().set();
     for (const RelightChoice& choice : choices()) {
         const Moment moment(set, *light, choice, window);
+        int of_probes_alone = 0;
         for (const Place& place : places()) {
             const picture::ProbeMix mix = mix_at(moment, place.at, place.normal);
             float shares = mix.fallback;
@@ -90,11 +91,13 @@ TEST(ProbeMix, SharesMakeWhatTheRuntimeBlends) {
             EXPECT_NEAR(shares, 1, 1e-5f);
             if (mix.fallback > 0)
                 continue;
+            ++of_probes_alone;
             const glm::vec3 found =
                 picture::as_vec(shade_ambient(light->light.mode, colours, picture::as_float3(place.normal)));
             const glm::vec3 right = picture::as_vec(moment.ambient(place.at, place.normal).colour);
             EXPECT_LT(glm::distance(found, right), 2e-3f * (glm::length(right) + 4));
         }
+        EXPECT_GT(of_probes_alone, 200);
     }
 }
 
@@ -141,6 +144,9 @@ TEST(TexelAge, FreshestIsWhatLiesAhead) {
     }
     EXPECT_LE(before, 2);
     EXPECT_EQ(age.frames_at(eye - glm::vec3(100, 0, 0)), 64);
+    // Outside of the volume there is no texel.
+    EXPECT_EQ(age.frames_at(eye + glm::vec3(230, 0, 0)), 64);
+    EXPECT_EQ(age.frames_at(eye + glm::vec3(180, 0, 60)), 64);
 }
 
 }  // namespace

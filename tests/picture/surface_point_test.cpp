@@ -95,6 +95,32 @@ TEST(SurfacePoint, LeavesLetLightThrough) {
     expect_near(scattered(scenery->scene(), *point, high), point->surface.transmitted);
 }
 
+TEST(Painter, SkyBehindGlassHasItsColour) {
+    const trace::FloatMode float_mode;
+    GltfBuilder b;
+    const int glass = b.add_material({.colour = {0.9f, 0.2f, 0.1f, 1}, .double_sided = true});
+    b.json["materials"][static_cast<std::size_t>(glass)]["extensions"] = {
+        {"KHR_materials_transmission", {{"transmissionFactor", 1}}}};
+    Shape pane;
+    pane.positions = {{-5, 4, -5}, {5, 4, -5}, {5, 4, 5}, {-5, 4, 5}};
+    pane.indices = {0, 1, 2, 0, 2, 3};
+    b.add_node({.mesh = b.add_mesh(in_gltf(pane), glass)});
+    const auto scenery = scenery_of(b);
+    kit::RequestedLight light;
+    light.light.sky = constant_sky({10, 10, 10});
+    const picture::Moment moment(baked_yard().set(), light, {}, {});
+    const Camera camera = Camera::at({0, 0, 0}, {0, 1, 0.2f}, 40, {});
+    const picture::Painter painter(*scenery, moment, camera, picture::Show::all);
+    // By chance a ray meets the pane itself, which is dark here.
+    glm::vec3 brightest(0);
+    for (int n = 0; n < 200; ++n)
+        brightest = glm::max(
+            brightest, painter.colour({37.0f + static_cast<float>(n) * 4, 211.0f + static_cast<float>(n)}));
+    EXPECT_LT(brightest.y, 0.5f * brightest.x);
+    EXPECT_LT(brightest.z, brightest.y);
+    EXPECT_GT(brightest.x, 5);
+}
+
 TEST(DirectLight, GlowingSurfacesShowWhatTheirGroupHas) {
     const trace::FloatMode float_mode;
     const picture::Scenery& scenery = yard_scenery();

@@ -1,0 +1,31 @@
+#include "bakerd/picture/rectangle.h"
+
+#include "format/kit/sector_folder.h"
+
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+
+#include <cmath>
+
+namespace drtv::picture {
+
+Rectangle square_of(const LoadedSector& sector) {
+    const auto side = static_cast<float>(sector_size_m);
+    const glm::vec2 low = glm::vec2(sector.view.i, sector.view.j) * side;
+    return {low, low + side};
+}
+
+Rectangle extent_of(const SectorSet& set) {
+    Rectangle extent{glm::vec2(INFINITY), glm::vec2(-INFINITY)};
+    kit::for_each_sector(set, [&](const LoadedSector& sector) {
+        const Rectangle square = square_of(sector);
+        extent = {glm::min(extent.low, square.low), glm::max(extent.high, square.high)};
+    });
+    return extent;
+}
+
+bool overlap(const Rectangle& a, const Rectangle& b) {
+    return glm::all(glm::lessThan(a.low, b.high)) && glm::all(glm::lessThan(b.low, a.high));
+}
+
+}  // namespace drtv::picture
