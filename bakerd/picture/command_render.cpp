@@ -44,8 +44,8 @@ class Rendering {
         if (!setting)
             return tl::unexpected(setting.error());
         setting_ = std::move(*setting);
-        for (const Hour& hour : hours_)
-            kit::warn_of_lost_light(setting_->sectors(), *hour.light, "in sight");
+        // Groups and lamps are the same at all hours.
+        kit::warn_of_lost_light(setting_->sectors(), *hours_.front().light, "in sight");
         if (auto done = check_size(); !done)
             return done;
         if (auto done = print_picks(); !done)

@@ -32,7 +32,10 @@ void add_view(CLI::App& command, RenderRequest& request) {
     CLI::Option* top = command.add_flag(
         "--top", request.top, "The map from above; the PNG says of which part of the world it is");
     top->excludes(camera)->excludes(fov);
-    command.add_option("--region", request.region, "Of the world, from above; by default all sectors. Widened to the picture's shape")
+    command
+        .add_option("--region",
+                    request.region,
+                    "Of the world, from above; by default all sectors. Widened to the picture's shape")
         ->needs(top)
         ->type_name("X0,Y0,X1,Y1");
 }
@@ -47,16 +50,18 @@ void add_picture(CLI::App& command, RenderRequest& request) {
             "--by", request.by, "Which probes: nearest, trilinear, volume; from above trilinear, else volume")
         ->check(kit::one_of({"nearest", "trilinear", "volume"}));
     command
-        .add_option("--encoding",
-                    request.encoding,
-                    "Of the volume's texels: rgba8, rgba8-sqrt, rgba16f; rgba16f, but to show what is clipped")
+        .add_option(
+            "--encoding",
+            request.encoding,
+            "Of the volume's texels: rgba8, rgba8-sqrt, rgba16f; rgba16f, but to show what is clipped")
         ->check(kit::one_of({"rgba8", "rgba8-sqrt", "rgba16f"}));
     command.add_flag_callback(
         "--no-interiors", [&request] { request.interiors = false; }, "Places inside are lit as outside");
     command
         .add_option("--exposure",
                     request.exposure,
-                    "noon: one for all pictures, so that night is night; auto: each its own; or stops (EV), -128 to 128")
+                    "noon: one for all pictures, so that night is night; auto: each its own; or stops (EV), "
+                    "-128 to 128")
         ->capture_default_str();
     command.add_option("--pick", request.picks, "Print what is at a pixel, as JSON; any number of times")
         ->allow_extra_args(false)
@@ -74,7 +79,8 @@ void add_picture(CLI::App& command, RenderRequest& request) {
 void add_render(CLI::App& command, RenderRequest& request) {
     command.footer(
         "Without any light it is noon; what is not said of light is dark.\n"
-        "Exit status: 0 done, 1 wrong usage, 2 a file cannot be read or written, 3 a file is invalid or does not "
+        "Exit status: 0 done, 1 wrong usage, 2 a file cannot be read or written, 3 a file is invalid or does "
+        "not "
         "fit");
     command.add_option("DIR", request.folder, "A folder of sector files, or one; before --map")->required();
     command.add_option("--map", request.maps, "glTF files that they were baked of, or folders of these")
