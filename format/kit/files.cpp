@@ -131,7 +131,7 @@ std::string png_target_problem(const std::string& path) {
     constexpr std::array<std::uint8_t, 8> signature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     std::error_code code;
     if (fs::is_directory(path, code))
-        return path + " is a folder, not a file";
+        return "cannot write " + path + ": it is a folder";
     const fs::path folder = fs::absolute(path, code).parent_path();
     if (!fs::is_directory(folder, code))
         return "cannot write " + path + ": there is no folder " + folder.string();
