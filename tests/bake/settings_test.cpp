@@ -46,13 +46,17 @@ TEST(Settings, KeyChangesWithEachSetting) {
 // It is stored in files: a change of it bakes every map anew, and is made with baker_version alone.
 TEST(Settings, KeysOfThePresetsStay) {
     ASSERT_EQ(baker_version, 6u);
-    EXPECT_EQ(map::to_hex(settings_key(*preset("draft"))), "1bdb112a4cc39dba7a0f84077ac76a58c2a756334fa3838a580ed4bf3779a462");
-    EXPECT_EQ(map::to_hex(settings_key(*preset("console"))), "4520cc453efa98cfb6e85905c86ca2fc8b3234ae81e84aa8e81402a672147ea4");
-    EXPECT_EQ(map::to_hex(settings_key(*preset("pc"))), "797896c0766c0318d3171cb589a78bf860a61e2dbe3539e3055d2d8d3493c973");
+    EXPECT_EQ(map::to_hex(settings_key(*preset("draft"))),
+              "1bdb112a4cc39dba7a0f84077ac76a58c2a756334fa3838a580ed4bf3779a462");
+    EXPECT_EQ(map::to_hex(settings_key(*preset("console"))),
+              "4520cc453efa98cfb6e85905c86ca2fc8b3234ae81e84aa8e81402a672147ea4");
+    EXPECT_EQ(map::to_hex(settings_key(*preset("pc"))),
+              "797896c0766c0318d3171cb589a78bf860a61e2dbe3539e3055d2d8d3493c973");
     Settings precise = *preset("pc");
     precise.error = 0.01f;
     precise.local_rays = 512;
-    EXPECT_EQ(map::to_hex(settings_key(precise)), "75565b5eff8c6f2fd1fcef4ad97676583c37e8f963de377a385ab9896d75f20f");
+    EXPECT_EQ(map::to_hex(settings_key(precise)),
+              "75565b5eff8c6f2fd1fcef4ad97676583c37e8f963de377a385ab9896d75f20f");
 }
 
 }  // namespace
