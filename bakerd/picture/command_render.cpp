@@ -94,8 +94,8 @@ class Rendering {
     [[nodiscard]] std::optional<double> brightness_of(const Hour& hour) const {
         const Show show = setting_->show();
         const Moment moment = moment_of(hour);
-        const bool as_all = !is_light(show) || show == Show::probes;
-        const Painter painter(setting_->scenery(), moment, setting_->camera(), as_all ? Show::all : show);
+        const Show exposed = is_surface_light(show) ? show : Show::all;
+        const Painter painter(setting_->scenery(), moment, setting_->camera(), exposed);
         return brightness_log2(painter, setting_->camera(), setting_->scenery().scene());
     }
 

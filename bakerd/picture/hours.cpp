@@ -18,11 +18,6 @@ Expected<Hour> read_hour(const kit::LightRequest& request) {
     return hour;
 }
 
-Expected<Hour> read_hour(kit::LightRequest request, const std::string& time) {
-    request.time = time;
-    return read_hour(request);
-}
-
 // Gives the times of a sheet.
 Expected<std::vector<std::optional<std::string>>> read_times(const RenderRequest& request) {
     for (const std::string& time : request.times) {
@@ -53,12 +48,15 @@ Expected<Hours> read_hours(const RenderRequest& request) {
         times->push_back(light.time);
     Hours hours;
     for (const std::optional<std::string>& time : *times) {
-        auto hour = time ? read_hour(light, *time) : read_hour(light);
+        light.time = time;
+        auto hour = read_hour(light);
         if (!hour)
             return tl::unexpected(hour.error());
         hours.shown.push_back(std::move(*hour));
     }
-    auto noon = hours.shown.front().time.empty() ? read_hour(light) : read_hour(light, "12:00");
+    if (light.time)
+        light.time = "12:00";
+    auto noon = read_hour(light);
     if (!noon)
         return tl::unexpected(noon.error());
     hours.noon = std::move(*noon);

@@ -10,12 +10,7 @@ namespace {
 
 constexpr float sun_cosine = 1 - 0x1.8p-17f;  // of half its disc's angle, 0.274 degrees
 
-VolumeSettings settings_of(const RelightChoice& choice) {
-    VolumeSettings settings;
-    settings.encoding = choice.encoding;
-    settings.outdoors = choice.interiors;
-    return settings;
-}
+}  // namespace
 
 void add(BasisColours& sum, const BasisColours& colours, float share) {
     for (std::size_t b = 0; b < basis_count; ++b) {
@@ -24,7 +19,12 @@ void add(BasisColours& sum, const BasisColours& colours, float share) {
     }
 }
 
-}  // namespace
+VolumeSettings volume_settings(const RelightChoice& choice) {
+    VolumeSettings settings;
+    settings.encoding = choice.encoding;
+    settings.outdoors = choice.interiors;
+    return settings;
+}
 
 Moment::Moment(const SectorSet& set,
                const kit::RequestedLight& light,
@@ -34,7 +34,7 @@ Moment::Moment(const SectorSet& set,
       light_(light),
       choice_(choice),
       shares_(kit::split_lamps(set, light.lamps)),
-      relit_(set, light.light, shares_, settings_of(choice)),
+      relit_(set, light.light, shares_, volume_settings(choice)),
       volume_(choice.by == By::volume ? &relit_.at(window) : nullptr),
       open_sky_(clamped(open_sky(light.light))) {}
 

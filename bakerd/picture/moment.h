@@ -31,6 +31,11 @@ struct RelightChoice {
     bool interiors = true;
 };
 
+[[nodiscard]] VolumeSettings volume_settings(const RelightChoice& choice);
+
+// A share of colours to others.
+void add(BasisColours& sum, const BasisColours& colours, float share);
+
 class Moment {
   public:
     // Relights all sectors of the set. `window`: the middle of the volume. `light` and `set` must outlive

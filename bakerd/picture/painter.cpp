@@ -134,10 +134,8 @@ glm::vec3 Painter::of_runtime(const SurfacePoint& point) const {
             return shape_of(point) * fallback(point);
         case Show::tile:
             return glm::vec3(set.sky_factor(asked));
-        case Show::cells: {
-            const Ambient ambient = moment_.ambient(point.at, normal);
-            return shape_of(point) * colour_of(ambient.probe);
-        }
+        case Show::cells:
+            return shape_of(point) * colour_of(set.nearest(asked).probes[0]);
         case Show::leaks:
             return leaks(point);
         case Show::weights:

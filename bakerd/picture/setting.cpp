@@ -43,13 +43,13 @@ Expected<std::unique_ptr<const Setting>> Setting::open(const RenderRequest& requ
     const map::Bounds bounds = bounds_of(**map);
     if (bounds.empty())
         return failed(kit::exit_invalid, "the map has nothing that could be seen");
-    if (auto done = setting->load_sectors(bounds); !done)
+    const Rectangle wanted = setting->wanted_of(bounds);
+    if (auto done = setting->load_sectors(wanted, {bounds.low, bounds.high}); !done)
         return tl::unexpected(done.error());
     if (request.compare) {
         if (auto done = setting->read_bake_settings(); !done)
             return tl::unexpected(done.error());
     }
-    const Rectangle wanted = setting->wanted_of(bounds);
     auto scenery = Scenery::build(*map, (wanted.low + wanted.high) / 2.0f);
     if (!scenery)
         return tl::unexpected(scenery.error());
@@ -80,7 +80,7 @@ Expected<void> Setting::read_choices() {
     const std::string encoding = request_.encoding.value_or(show_ == Show::clipped ? "rgba8" : "rgba16f");
     choice_.encoding = kit::encoding_of(encoding);
     choice_.interiors = request_.interiors;
-    if (request_.compare && (!is_light(show_) || show_ == Show::probes))
+    if (request_.compare && !is_surface_light(show_))
         return failed(
             kit::exit_usage,
             fmt::format("render: --compare goes with light, all or a part of it, not with --show {}",
@@ -118,11 +118,9 @@ Expected<void> Setting::load_around(const Rectangle& wanted) {
     return {};
 }
 
-Expected<void> Setting::load_sectors(const map::Bounds& bounds) {
-    const Rectangle wanted = wanted_of(bounds);
+Expected<void> Setting::load_sectors(const Rectangle& wanted, const Rectangle& map) {
     if (auto done = load_around(wanted); !done)
         return done;
-    const Rectangle map{bounds.low, bounds.high};
     std::size_t count = 0;
     bool fits = false;
     kit::for_each_sector(folder_->set(), [&](const LoadedSector& sector) {

@@ -39,7 +39,7 @@ class Setting {
     explicit Setting(const RenderRequest& request) : request_(request) {}
     [[nodiscard]] Expected<void> read_choices();
     [[nodiscard]] Expected<void> read_bake_settings();
-    [[nodiscard]] Expected<void> load_sectors(const map::Bounds& bounds);
+    [[nodiscard]] Expected<void> load_sectors(const Rectangle& wanted, const Rectangle& map);
     [[nodiscard]] Expected<void> load_around(const Rectangle& wanted);
     [[nodiscard]] Rectangle wanted_of(const map::Bounds& bounds) const;
     [[nodiscard]] Expected<void> place_camera(const map::Bounds& bounds);

@@ -37,9 +37,13 @@ struct ShowName {
 // REQUIRES: a name of the table.
 [[nodiscard]] Show show_of(std::string_view name);
 
+// Whether it is light of the surfaces themselves: all, or of the ambient light.
+[[nodiscard]] inline bool is_surface_light(Show show) {
+    return show <= Show::local;
+}
 // Whether it is light, which is exposed and developed; else colours are shown as they are.
 [[nodiscard]] inline bool is_light(Show show) {
-    return show <= Show::local || show == Show::probes;
+    return is_surface_light(show) || show == Show::probes;
 }
 
 }  // namespace drtv::picture

@@ -9,9 +9,8 @@ TexelAge::TexelAge(const SectorSet& set,
                    const kit::RequestedLight& light,
                    const RelightChoice& choice,
                    const glm::vec3& eye,
-                   const glm::vec3& forward) {
-    settings_.encoding = choice.encoding;
-    settings_.outdoors = choice.interiors;
+                   const glm::vec3& forward)
+    : settings_(volume_settings(choice)) {
     settings_.borders = false;
     written_.resize(static_cast<std::size_t>(settings_.size[0]) *
                     static_cast<std::size_t>(settings_.size[1]) *

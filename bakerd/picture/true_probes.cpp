@@ -22,11 +22,6 @@ glm::vec3 weighted(const BasisColours& colours, const Float4& weights) {
     return sum;
 }
 
-void add(BasisColours& sum, const BasisColours& colours, float share) {
-    for (std::size_t b = 0; b < basis_count; ++b)
-        sum[b] = as_float3(as_vec(sum[b]) + as_vec(colours[b]) * share);
-}
-
 }  // namespace
 
 Guesses<glm::vec3> shaded(RelightMode mode,

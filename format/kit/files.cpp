@@ -29,6 +29,16 @@ bool may_be_sector(const FileBytes& bytes) {
     return std::equal(start.begin(), start.end(), bytes.begin());
 }
 
+// The first bytes of a file, as many as there are; nothing where it cannot be opened.
+std::optional<std::size_t> read_head(const std::string& path, std::span<std::uint8_t> head) {
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (file == nullptr)
+        return std::nullopt;
+    const std::size_t size = std::fread(head.data(), 1, head.size(), file);
+    std::fclose(file);
+    return size;
+}
+
 std::string reason() {
     return std::strerror(errno);
 }
@@ -95,12 +105,7 @@ TextRead read_standard_input() {
 std::optional<std::pair<std::int32_t, std::int32_t>> sector_of_file(const std::string& path) {
     constexpr std::size_t sector_at = 16;  // in the header (SPEC.md, section 4.1): i, then j
     std::array<std::uint8_t, sector_at + 8> head{};
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (file == nullptr)
-        return std::nullopt;
-    const bool whole = std::fread(head.data(), 1, head.size(), file) == head.size();
-    std::fclose(file);
-    if (!whole || !may_be_sector(FileBytes(head.begin(), head.end())))
+    if (read_head(path, head) != head.size() || !may_be_sector(FileBytes(head.begin(), head.end())))
         return std::nullopt;
     std::pair<std::int32_t, std::int32_t> sector;
     std::memcpy(&sector.first, &head[sector_at], sizeof sector.first);
@@ -138,13 +143,9 @@ std::string png_target_problem(const std::string& path) {
     if (!fs::is_regular_file(path, code) || fs::file_size(path, code) == 0)
         return {};
     std::array<std::uint8_t, signature.size()> head{};
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (file == nullptr)
-        return {};
-    const bool whole = std::fread(head.data(), 1, head.size(), file) == head.size();
-    std::fclose(file);
-    return whole && head == signature ? std::string()
-                                      : path + " is there and no PNG file: it is not replaced";
+    const std::optional<std::size_t> size = read_head(path, head);
+    const bool is_png = size == head.size() && head == signature;
+    return !size || is_png ? std::string() : path + " is there and no PNG file: it is not replaced";
 }
 
 std::string write_png_file(const std::string& path, const FileBytes& png) {
