@@ -47,11 +47,11 @@ void Canvas::frame(const PixelRect& rect, const Colour& colour) {
     }
 }
 
-tl::expected<std::string, std::string> Canvas::png() const {
+cli::Result<std::string> Canvas::png() const {
     constexpr int channels = 3;
     std::string png;
     if (stbi_write_png_to_func(append, &png, width_, height_, channels, rgb_.data(), width_ * channels) == 0)
-        return tl::unexpected(std::string("the picture could not be encoded"));
+        return cli::fail(cli::exit_unreadable, "memory is too short for the picture");
     return png;
 }
 

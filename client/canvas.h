@@ -1,12 +1,12 @@
 // A picture to draw on: pixels from the top left, what lies outside is cut off.
 #pragma once
 
+#include "format/cli/failure.h"
+
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <tl/expected.hpp>
 
 namespace drtv::client {
 
@@ -31,7 +31,7 @@ class Canvas {
     void frame(const PixelRect& rect, const Colour& colour);
 
     // The bytes of a PNG file.
-    [[nodiscard]] tl::expected<std::string, std::string> png() const;
+    [[nodiscard]] cli::Result<std::string> png() const;
 
   private:
     void dot(int x, int y, const Colour& colour);

@@ -15,6 +15,7 @@ namespace {
 // `removed` is the number of results, where some were to be.
 void print_json(const v1::CacheState& state, std::optional<std::int64_t> removed) {
     nlohmann::ordered_json json;
+    json["kind"] = "cache";
     json["results"] = state.results();
     json["size"] = state.size_bytes();
     json["limit"] = state.limit_bytes();
@@ -52,17 +53,17 @@ void print_text(const v1::CacheState& state, std::optional<std::int64_t> removed
 
 }  // namespace
 
-int run_cache(Connection& connection, bool clear) {
+cli::Result<cli::ExitCode> run_cache(ServerConnection& connection, bool clear) {
     v1::CacheState state;
     grpc::ClientContext context;
     if (const grpc::Status status = connection.cache->GetCache(&context, {}, &state); !status.ok())
-        return complain(connection.sentence(status));
+        return tl::unexpected(connection.failure(status));
     std::optional<std::int64_t> removed;
     if (clear) {
         const std::int64_t results_before = state.results();
         grpc::ClientContext clearing;
         if (const grpc::Status status = connection.cache->ClearCache(&clearing, {}, &state); !status.ok())
-            return complain(connection.sentence(status));
+            return tl::unexpected(connection.failure(status));
         // Others may bake in the meantime.
         removed = std::max<std::int64_t>(results_before - state.results(), 0);
     }
@@ -70,7 +71,7 @@ int run_cache(Connection& connection, bool clear) {
         print_json(state, removed);
     else
         print_text(state, removed);
-    return 0;
+    return cli::exit_done;
 }
 
 }  // namespace drtv::client

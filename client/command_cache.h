@@ -6,6 +6,6 @@
 namespace drtv::client {
 
 // Tells size and hit rate; with `clear`, removes first all that no running job needs. Gives the exit status.
-int run_cache(Connection& connection, bool clear);
+cli::Result<cli::ExitCode> run_cache(ServerConnection& connection, bool clear);
 
 }  // namespace drtv::client

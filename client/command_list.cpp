@@ -1,5 +1,6 @@
 #include "client/command_list.h"
 
+#include "client/job_end.h"
 #include "client/job_text.h"
 #include "client/number_text.h"
 
@@ -36,29 +37,26 @@ void print_row(const v1::Job& job) {
                 job.settings().preset().c_str());
 }
 
-int print(Connection& connection, const grpc::Status& status, const v1::Job& job) {
-    if (!status.ok())
-        return complain(connection.sentence(status));
+void print(const ServerConnection& connection, const v1::Job& job) {
     if (connection.options.json) {
         std::puts(json_line(job).c_str());
-        return 0;
+        return;
     }
     std::puts(one_line(job).c_str());
     if (!job.error().empty())
         std::printf("  %s\n", job.error().c_str());
-    return 0;
 }
 
 }  // namespace
 
-int run_list(Connection& connection) {
+cli::Result<cli::ExitCode> run_list(ServerConnection& connection) {
     const bool as_json = connection.options.json;
     v1::ListJobsRequest request;
     for (;;) {
         grpc::ClientContext context;
         v1::ListJobsResponse response;
         if (const grpc::Status status = connection.jobs->ListJobs(&context, request, &response); !status.ok())
-            return complain(connection.sentence(status));
+            return tl::unexpected(connection.failure(status));
         const bool is_first_page = request.page_token().empty();
         if (!as_json && is_first_page)
             print_heading();
@@ -69,27 +67,28 @@ int run_list(Connection& connection) {
                 print_row(job);
         }
         if (response.next_page_token().empty())
-            return 0;
+            return cli::exit_done;
         request.set_page_token(response.next_page_token());
     }
 }
 
-int run_status(Connection& connection, const std::string& job) {
-    v1::GetJobRequest request;
-    request.set_name(job_resource(job));
-    grpc::ClientContext context;
-    v1::Job found;
-    const grpc::Status status = connection.jobs->GetJob(&context, request, &found);
-    return print(connection, status, found);
+cli::Result<cli::ExitCode> run_status(ServerConnection& connection, const std::string& job) {
+    const auto found = get_job(connection, job);
+    if (!found)
+        return tl::unexpected(found.error());
+    print(connection, *found);
+    return cli::exit_done;
 }
 
-int run_cancel(Connection& connection, const std::string& job) {
+cli::Result<cli::ExitCode> run_cancel(ServerConnection& connection, const std::string& job) {
     v1::CancelJobRequest request;
     request.set_name(job_resource(job));
     grpc::ClientContext context;
     v1::Job cancelled;
-    const grpc::Status status = connection.jobs->CancelJob(&context, request, &cancelled);
-    return print(connection, status, cancelled);
+    if (const grpc::Status status = connection.jobs->CancelJob(&context, request, &cancelled); !status.ok())
+        return tl::unexpected(connection.failure(status));
+    print(connection, cancelled);
+    return cli::exit_done;
 }
 
 }  // namespace drtv::client

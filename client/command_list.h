@@ -8,8 +8,8 @@
 namespace drtv::client {
 
 // Each prints what it is told and gives the exit status. `job` is "12" or "jobs/12".
-int run_list(Connection& connection);
-int run_status(Connection& connection, const std::string& job);
-int run_cancel(Connection& connection, const std::string& job);
+cli::Result<cli::ExitCode> run_list(ServerConnection& connection);
+cli::Result<cli::ExitCode> run_status(ServerConnection& connection, const std::string& job);
+cli::Result<cli::ExitCode> run_cancel(ServerConnection& connection, const std::string& job);
 
 }  // namespace drtv::client

@@ -2,6 +2,7 @@
 
 #include "client/number_text.h"
 #include "client/plan_picture.h"
+#include "format/cli/report.h"
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
@@ -61,6 +62,7 @@ Json json_of(const v1::MapChange& change) {
 
 void print_json(const v1::Plan& plan) {
     Json json;
+    json["kind"] = "plan";
     json["sectors_total"] = plan.sectors_size();
     json["hits"] = count(plan, v1::PlannedSector::HIT);
     json["near_hits"] = count(plan, v1::PlannedSector::NEAR_HIT);
@@ -118,29 +120,31 @@ void print_text(const v1::Plan& plan) {
 
 }  // namespace
 
-int run_plan(Connection& connection, const SubmitOptions& options, const std::string& picture) {
+cli::Result<cli::ExitCode> run_plan(ServerConnection& connection,
+                                    const SubmitOptions& options,
+                                    const std::string& picture) {
     const auto job = prepare_job(connection, options);
     if (!job)
-        return complain(job.error());
+        return tl::unexpected(job.error());
     v1::PlanJobRequest request;
     *request.mutable_job() = *job;
     grpc::ClientContext context;
     v1::Plan plan;
     if (const grpc::Status status = connection.jobs->PlanJob(&context, request, &plan); !status.ok())
-        return complain(connection.sentence(status));
+        return tl::unexpected(connection.failure(status));
     for (const std::string& warning : plan.warnings())
-        warn(warning);
+        cli::warn(warning);
     if (connection.options.json)
         print_json(plan);
     else
         print_text(plan);
     if (picture.empty())
-        return 0;
+        return cli::exit_done;
     if (auto written = write_plan_picture(plan, picture); !written)
-        return complain(written.error());
+        return tl::unexpected(written.error());
     if (!connection.options.json)
         std::printf("%s: green hits, yellow near hits, red to bake, blue what changed\n", picture.c_str());
-    return 0;
+    return cli::exit_done;
 }
 
 }  // namespace drtv::client

@@ -9,6 +9,8 @@
 namespace drtv::client {
 
 // Prints the plan; unless `picture` is empty, a PNG is written there too. Gives the exit status.
-int run_plan(Connection& connection, const SubmitOptions& options, const std::string& picture);
+cli::Result<cli::ExitCode> run_plan(ServerConnection& connection,
+                                    const SubmitOptions& options,
+                                    const std::string& picture);
 
 }  // namespace drtv::client

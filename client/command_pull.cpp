@@ -1,18 +1,25 @@
 #include "client/command_pull.h"
 
 #include "client/folder_pull.h"
+#include "client/job_end.h"
 #include "client/whole_file.h"
 
 namespace drtv::client {
 
-int run_pull(Connection& connection, const std::string& job, const std::string& folder) {
+cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
+                                    const std::string& job,
+                                    const std::string& folder) {
     if (auto made = make_folder(folder); !made)
-        return complain(made.error());
+        return tl::unexpected(made.error());
+    // As it is before the files are asked for: what ends in the meantime is not missed then.
+    const auto found = get_job(connection, job);
+    if (!found)
+        return tl::unexpected(found.error());
     FolderPull pull(connection, job, folder);
     if (auto pulled = pull.pull(); !pulled)
-        return complain(pulled.error());
+        return tl::unexpected(pulled.error());
     pull.report();
-    return 0;
+    return end_of(*found);
 }
 
 }  // namespace drtv::client

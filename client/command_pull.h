@@ -8,6 +8,8 @@
 namespace drtv::client {
 
 // Makes the folder when it is missing. Gives the exit status.
-int run_pull(Connection& connection, const std::string& job, const std::string& folder);
+cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
+                                    const std::string& job,
+                                    const std::string& folder);
 
 }  // namespace drtv::client

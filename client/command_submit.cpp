@@ -5,6 +5,7 @@
 #include "client/interrupt.h"
 #include "client/job_text.h"
 #include "client/number_text.h"
+#include "format/cli/report.h"
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
@@ -23,7 +24,7 @@ std::string random_id() {
     return id;
 }
 
-void print_submitted(const Connection& connection, const v1::Job& job) {
+void print_submitted(const ServerConnection& connection, const v1::Job& job) {
     if (connection.options.json) {
         std::puts(json_line(job).c_str());
     } else {
@@ -35,13 +36,15 @@ void print_submitted(const Connection& connection, const v1::Job& job) {
                     number.c_str());
     }
     for (const std::string& warning : job.warnings())
-        warn(warning);
+        cli::warn(warning);
 }
 
 // Files come while the rest is still being baked.
-int watch_and_pull(Connection& connection, const std::string& job, const std::string& folder) {
-    FolderPull pull(connection, job, folder);
-    tl::expected<void, std::string> pulled;
+cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
+                                          const std::string& job,
+                                          const SubmitOptions& options) {
+    FolderPull pull(connection, job, options.pull_folder);
+    cli::Result<void> pulled;
     std::int64_t done = 0;
     const auto pull_new = [&](const v1::Job& now) {
         if (!pulled || now.sectors_done() == done)
@@ -49,40 +52,40 @@ int watch_and_pull(Connection& connection, const std::string& job, const std::st
         done = now.sectors_done();
         pulled = pull.pull();
     };
-    const int watched = run_watch(connection, job, pull_new);
-    if (watched == exit_interrupted)
+    const auto watched = run_watch(connection, job, options.timeout_s, pull_new);
+    if (watched == cli::exit_interrupted)
         return watched;
     if (pulled)
         pulled = pull.pull();
     if (!pulled)
-        return complain(pulled.error());
+        return tl::unexpected(pulled.error());
     pull.report();
     return watched;
 }
 
 }  // namespace
 
-int run_submit(Connection& connection, const SubmitOptions& options) {
+cli::Result<cli::ExitCode> run_submit(ServerConnection& connection, const SubmitOptions& options) {
     const auto job = prepare_job(connection, options);
     if (!job)
-        return complain(job.error());
+        return tl::unexpected(job.error());
     v1::CreateJobRequest request;
     *request.mutable_job() = *job;
     request.set_request_id(random_id());
     grpc::ClientContext context;
     v1::Job created;
     if (const grpc::Status status = connection.jobs->CreateJob(&context, request, &created); !status.ok())
-        return complain(connection.sentence(status));
+        return tl::unexpected(connection.failure(status));
 
     if (created.sectors_total() == 0)
-        warn("the map has no ground, so there is nothing to bake");
+        return cli::fail(cli::exit_invalid, "the map has no ground, so there is nothing to bake");
     const std::string number = job_number(created);
     if (!options.pull_folder.empty())
-        return watch_and_pull(connection, number, options.pull_folder);
+        return watch_and_pull(connection, number, options);
     if (options.wait)
-        return run_watch(connection, number);
+        return run_watch(connection, number, options.timeout_s);
     print_submitted(connection, created);
-    return 0;
+    return cli::exit_done;
 }
 
 }  // namespace drtv::client

@@ -8,6 +8,6 @@ namespace drtv::client {
 
 // Submits, and when the options say so, watches the job to its end and pulls its files while they are made.
 // Gives the exit status.
-int run_submit(Connection& connection, const SubmitOptions& options);
+cli::Result<cli::ExitCode> run_submit(ServerConnection& connection, const SubmitOptions& options);
 
 }  // namespace drtv::client

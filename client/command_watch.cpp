@@ -1,15 +1,18 @@
 #include "client/command_watch.h"
 
 #include "client/interrupt.h"
+#include "client/job_end.h"
 #include "client/job_text.h"
 #include "client/number_text.h"
 #include "client/progress.h"
+#include "format/cli/report.h"
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <thread>
 
 namespace drtv::client {
@@ -17,6 +20,17 @@ namespace {
 
 // How long a daemon may be away (restarting) before a watch gives up.
 constexpr std::chrono::seconds reconnect_patience{60};
+
+// Nothing: without a limit.
+using Deadline = std::optional<std::chrono::system_clock::time_point>;
+
+Deadline deadline_in(double seconds) {
+    using std::chrono::system_clock;
+    if (seconds <= 0)
+        return std::nullopt;
+    return system_clock::now() +
+           std::chrono::duration_cast<system_clock::duration>(std::chrono::duration<double>(seconds));
+}
 
 std::string progress_text(const v1::Job& job) {
     std::string text = fmt::format("{}/{} sectors  {} probes",
@@ -40,14 +54,17 @@ double share_ended(const v1::Job& job) {
     return static_cast<double>(ended) / static_cast<double>(job.sectors_total());
 }
 
-grpc::Status follow(Connection& connection,
+grpc::Status follow(ServerConnection& connection,
                     const std::string& name,
                     Progress& progress,
                     const OnProgress& progressed,
+                    const Deadline& deadline,
                     v1::Job& last) {
     v1::WatchJobRequest request;
     request.set_name(name);
     grpc::ClientContext context;
+    if (deadline)
+        context.set_deadline(*deadline);
     const InterruptGuard guard(context);
     const auto reader = connection.jobs->WatchJob(&context, request);
     v1::Job job;
@@ -65,57 +82,61 @@ grpc::Status follow(Connection& connection,
     return reader->Finish();
 }
 
-// Gives the exit status.
-int tell_end(const Connection& connection, const v1::Job& job) {
+cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1::Job& job) {
     if (!connection.options.json)
         std::puts(one_line(job).c_str());
     for (const std::string& warning : job.warnings())
-        warn(warning);
+        cli::warn(warning);
     const bool succeeded = job.state() == v1::Job::SUCCEEDED;
     if (succeeded && job.sectors_total() > 0 && job.probes() == 0) {
-        warn(
+        cli::warn(
             "no probe was placed: no column of the lattice meets ground that faces up, with 1.5 m of air "
             "above it");
     }
-    if (job.state() == v1::Job::FAILED)
-        return complain(job.error());
-    return succeeded ? 0 : 1;
+    return end_of(job);
 }
 
 }  // namespace
 
-int run_watch(Connection& connection, const std::string& argument, const OnProgress& progressed) {
+cli::Result<cli::ExitCode> run_watch(ServerConnection& connection,
+                                     const std::string& argument,
+                                     double timeout_s,
+                                     const OnProgress& progressed) {
     catch_interrupt();
     const std::string name = job_resource(argument);
     const std::string number = name.substr(name.find('/') + 1);
+    const std::string come_back = "come back with: bake watch " + number;
+    const Deadline deadline = deadline_in(timeout_s);
     Progress progress;
     v1::Job job;
     auto last_contact = std::chrono::steady_clock::now();
     bool told = false;
     for (;;) {
         const std::string state_before = job.SerializeAsString();
-        const grpc::Status status = follow(connection, name, progress, progressed, job);
+        const grpc::Status status = follow(connection, name, progress, progressed, deadline, job);
         progress.clear();
         if (interrupted()) {
-            std::fprintf(stderr,
-                         "bake: job %s goes on without this client; come back with: bake watch %s\n",
-                         number.c_str(),
-                         number.c_str());
-            return exit_interrupted;
+            cli::note(fmt::format("job {} goes on without this client; {}", number, come_back));
+            return cli::exit_interrupted;
         }
         if (has_ended(job))
             break;
+        if (deadline && std::chrono::system_clock::now() >= *deadline) {
+            return cli::fail(
+                cli::exit_timeout,
+                fmt::format(
+                    "job {} has not ended after {} s, and goes on; {}", number, timeout_s, come_back));
+        }
         if (status.error_code() != grpc::StatusCode::UNAVAILABLE)
-            return complain(connection.sentence(status));
+            return tl::unexpected(connection.failure(status));
         if (job.SerializeAsString() != state_before)
             last_contact = std::chrono::steady_clock::now();
         if (job.name().empty() || std::chrono::steady_clock::now() - last_contact > reconnect_patience)
-            return complain(connection.sentence(status));
+            return tl::unexpected(connection.failure(status));
         if (!told)
-            std::fprintf(stderr,
-                         "bake: lost bakerd at %s; trying again for %lld s\n",
-                         connection.options.server.c_str(),
-                         static_cast<long long>(reconnect_patience.count()));
+            cli::note(fmt::format("lost bakerd at {}; trying again for {} s",
+                                  connection.options.server,
+                                  reconnect_patience.count()));
         told = true;
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
     }

@@ -1,10 +1,11 @@
 #include "client/connection.h"
 
+#include "drtv/v1/error.pb.h"
+
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -14,17 +15,17 @@ namespace {
 
 using Credentials = std::shared_ptr<grpc::ChannelCredentials>;
 
-tl::expected<void, std::string> read_pem(const std::string& path, std::string& text) {
+cli::Result<void> read_pem(const std::string& path, std::string& text) {
     if (path.empty())
-        return tl::unexpected(std::string("TLS needs all three of --tls-ca, --tls-cert and --tls-key"));
+        return cli::fail(cli::exit_usage, "TLS needs all three of --tls-ca, --tls-cert and --tls-key");
     std::ifstream file(path, std::ios::binary);
     if (!file)
-        return tl::unexpected(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+        return cli::fail(cli::exit_unreadable, fmt::format("cannot read {}: {}", path, std::strerror(errno)));
     text.assign(std::istreambuf_iterator<char>(file), {});
     return {};
 }
 
-tl::expected<Credentials, std::string> credentials(const ConnectionOptions& options) {
+cli::Result<Credentials> credentials(const ConnectionOptions& options) {
     if (options.tls_ca.empty() && options.tls_key.empty() && options.tls_certificate.empty())
         return grpc::InsecureChannelCredentials();
     grpc::SslCredentialsOptions tls;
@@ -39,18 +40,32 @@ tl::expected<Credentials, std::string> credentials(const ConnectionOptions& opti
 
 }  // namespace
 
-std::string Connection::sentence(const grpc::Status& status) const {
-    const std::string message = status.error_message();
-    const bool is_away = status.error_code() == grpc::StatusCode::UNAVAILABLE;
-    const bool says_it_stops = message.find("stopping") != std::string::npos;
-    if (is_away && !says_it_stops)
-        return fmt::format("cannot reach bakerd at {}: is it running?", options.server);
-    if (message.empty())
-        return fmt::format("bakerd answered with status {}", static_cast<int>(status.error_code()));
-    return message;
+cli::Failure ServerConnection::failure(const grpc::Status& status, cli::ExitCode invalid) const {
+    // What bakerd says itself has details; all else comes from the way to it.
+    const std::string details = status.error_details();
+    const bool from_server = !details.empty() && v1::ErrorDetails().ParseFromString(details);
+    if (!from_server && status.error_code() == grpc::StatusCode::UNAVAILABLE)
+        return {cli::exit_server, fmt::format("cannot reach bakerd at {}: is it running?", options.server)};
+    if (!from_server) {
+        const int code = static_cast<int>(status.error_code());
+        return {
+            cli::exit_server,
+            fmt::format(
+                "a call to {} failed: {} (gRPC status {})", options.server, status.error_message(), code)};
+    }
+    switch (status.error_code()) {
+        case grpc::StatusCode::INVALID_ARGUMENT:
+            return {invalid, status.error_message()};
+        case grpc::StatusCode::NOT_FOUND:
+            return {cli::exit_usage, status.error_message()};
+        case grpc::StatusCode::DATA_LOSS:
+            return {cli::exit_unreadable, status.error_message()};
+        default:
+            return {cli::exit_server, status.error_message()};
+    }
 }
 
-tl::expected<Connection, std::string> connect(const ConnectionOptions& options) {
+cli::Result<ServerConnection> connect(const ConnectionOptions& options) {
     const auto secured = credentials(options);
     if (!secured)
         return tl::unexpected(secured.error());
@@ -59,7 +74,7 @@ tl::expected<Connection, std::string> connect(const ConnectionOptions& options) 
     arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
     arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
     const auto channel = grpc::CreateCustomChannel(options.server, *secured, arguments);
-    Connection connection;
+    ServerConnection connection;
     connection.options = options;
     connection.blobs = v1::Blobs::NewStub(channel);
     connection.maps = v1::Maps::NewStub(channel);
@@ -67,15 +82,6 @@ tl::expected<Connection, std::string> connect(const ConnectionOptions& options) 
     connection.sectors = v1::Sectors::NewStub(channel);
     connection.cache = v1::Cache::NewStub(channel);
     return connection;
-}
-
-int complain(const std::string& sentence) {
-    std::fprintf(stderr, "bake: %s\n", sentence.c_str());
-    return 1;
-}
-
-void warn(const std::string& sentence) {
-    std::fprintf(stderr, "bake: warning: %s\n", sentence.c_str());
 }
 
 std::string job_resource(const std::string& argument) {

@@ -6,11 +6,10 @@
 #include "drtv/v1/job.grpc.pb.h"
 #include "drtv/v1/map.grpc.pb.h"
 #include "drtv/v1/sector.grpc.pb.h"
+#include "format/cli/failure.h"
 
 #include <memory>
 #include <string>
-
-#include <tl/expected.hpp>
 
 namespace drtv::client {
 
@@ -20,10 +19,10 @@ struct ConnectionOptions {
     std::string tls_ca;
     std::string tls_certificate;
     std::string tls_key;
-    bool json = false;  // one object a line on standard output
+    bool json = false;  // one object per line on standard output
 };
 
-struct Connection {
+struct ServerConnection {
     ConnectionOptions options;
     std::unique_ptr<v1::Blobs::Stub> blobs;
     std::unique_ptr<v1::Maps::Stub> maps;
@@ -31,17 +30,13 @@ struct Connection {
     std::unique_ptr<v1::Sectors::Stub> sectors;
     std::unique_ptr<v1::Cache::Stub> cache;
 
-    // "cannot reach bakerd at 127.0.0.1:7447: is it running?" or the server's own sentence.
-    [[nodiscard]] std::string sentence(const grpc::Status& status) const;
+    // What a status that is not OK means for the program: the server's own sentence, or that it cannot be
+    // reached. `invalid`: the exit code where the server found what it was sent invalid.
+    [[nodiscard]] cli::Failure failure(const grpc::Status& status,
+                                       cli::ExitCode invalid = cli::exit_usage) const;
 };
 
-[[nodiscard]] tl::expected<Connection, std::string> connect(const ConnectionOptions& options);
-
-// "bake: <sentence>" to standard error; gives exit status 1.
-int complain(const std::string& sentence);
-
-// "bake: warning: <sentence>" to standard error.
-void warn(const std::string& sentence);
+[[nodiscard]] cli::Result<ServerConnection> connect(const ConnectionOptions& options);
 
 // "12" or "jobs/12" -> "jobs/12".
 [[nodiscard]] std::string job_resource(const std::string& argument);

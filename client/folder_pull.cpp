@@ -22,14 +22,14 @@ std::string file_name(const v1::SectorCoordinate& sector) {
 
 class Puller {
   public:
-    Puller(Connection& connection, std::string folder)
+    Puller(ServerConnection& connection, std::string folder)
         : connection_(connection), folder_(std::move(folder)) {}
 
-    tl::expected<void, std::string> run(const v1::PullSectorsRequest& request) {
+    cli::Result<void> run(const v1::PullSectorsRequest& request) {
         grpc::ClientContext context;
         const auto reader = connection_.sectors->PullSectors(&context, request);
         v1::PullSectorsResponse message;
-        tl::expected<void, std::string> result;
+        cli::Result<void> result;
         while (result && reader->Read(&message)) {
             if (message.has_sector()) {
                 sector_ = message.sector();
@@ -44,15 +44,16 @@ class Puller {
             return result;
         }
         if (const grpc::Status status = reader->Finish(); !status.ok())
-            return tl::unexpected(connection_.sentence(status));
+            return tl::unexpected(connection_.failure(status));
         return {};
     }
 
   private:
-    tl::expected<void, std::string> keep(int total) {
+    cli::Result<void> keep(int total) {
         const std::string path = folder_ + "/" + file_name(sector_.coordinate());
         if (sha256_of_text(bytes_) != sector_.sha256())
-            return tl::unexpected(fmt::format("{} arrived damaged; nothing was written", path));
+            return cli::fail(cli::exit_unreadable,
+                             fmt::format("{} arrived damaged; nothing was written", path));
         if (auto written = write_whole(path, bytes_); !written)
             return written;
         ++kept_;
@@ -61,7 +62,7 @@ class Puller {
         return {};
     }
 
-    Connection& connection_;
+    ServerConnection& connection_;
     const std::string folder_;
     Progress progress_;
     v1::Sector sector_;
@@ -71,10 +72,10 @@ class Puller {
 
 }  // namespace
 
-FolderPull::FolderPull(Connection& connection, const std::string& job, std::string folder)
+FolderPull::FolderPull(ServerConnection& connection, const std::string& job, std::string folder)
     : connection_(connection), job_(job_resource(job)), folder_(std::move(folder)) {}
 
-tl::expected<void, std::string> FolderPull::pull() {
+cli::Result<void> FolderPull::pull() {
     v1::PullSectorsRequest wanted;
     wanted.set_job(job_);
     if (auto chosen = choose(wanted); !chosen)
@@ -88,7 +89,7 @@ tl::expected<void, std::string> FolderPull::pull() {
     return {};
 }
 
-tl::expected<void, std::string> FolderPull::choose(v1::PullSectorsRequest& wanted) {
+cli::Result<void> FolderPull::choose(v1::PullSectorsRequest& wanted) {
     unfinished_ = 0;
     v1::ListSectorsRequest request;
     request.set_job(job_);
@@ -97,7 +98,7 @@ tl::expected<void, std::string> FolderPull::choose(v1::PullSectorsRequest& wante
         v1::ListSectorsResponse response;
         const grpc::Status status = connection_.sectors->ListSectors(&context, request, &response);
         if (!status.ok())
-            return tl::unexpected(connection_.sentence(status));
+            return tl::unexpected(connection_.failure(status));
         for (const v1::Sector& sector : response.sectors()) {
             if (sector.state() != v1::Sector::DONE) {
                 ++unfinished_;
@@ -130,6 +131,7 @@ bool FolderPull::has_file_of(const v1::Sector& sector) const {
 void FolderPull::report() const {
     if (connection_.options.json) {
         nlohmann::ordered_json json;
+        json["kind"] = "pull";
         json["job"] = job_.substr(job_.find('/') + 1);
         json["folder"] = folder_;
         json["pulled"] = pulled_;

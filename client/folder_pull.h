@@ -2,13 +2,12 @@
 #pragma once
 
 #include "client/connection.h"
+#include "format/cli/failure.h"
 
 #include <cstdint>
 #include <set>
 #include <string>
 #include <utility>
-
-#include <tl/expected.hpp>
 
 namespace drtv::client {
 
@@ -16,19 +15,19 @@ namespace drtv::client {
 // already and right is left alone. REQUIRES: the folder is there; the connection outlives it.
 class FolderPull {
   public:
-    FolderPull(Connection& connection, const std::string& job, std::string folder);
+    FolderPull(ServerConnection& connection, const std::string& job, std::string folder);
 
     // Those that have been finished since.
-    [[nodiscard]] tl::expected<void, std::string> pull();
+    [[nodiscard]] cli::Result<void> pull();
 
     // What was done, on standard output.
     void report() const;
 
   private:
-    [[nodiscard]] tl::expected<void, std::string> choose(v1::PullSectorsRequest& wanted);
+    [[nodiscard]] cli::Result<void> choose(v1::PullSectorsRequest& wanted);
     [[nodiscard]] bool has_file_of(const v1::Sector& sector) const;
 
-    Connection& connection_;
+    ServerConnection& connection_;
     const std::string job_;
     const std::string folder_;
     std::set<std::pair<std::int32_t, std::int32_t>> here_;  // sectors whose files are in the folder

@@ -10,9 +10,6 @@ class ClientContext;
 
 namespace drtv::client {
 
-// Exit status for ctrl-C, as shells count.
-inline constexpr int exit_interrupted = 130;
-
 // From now on ctrl-C ends nothing, and is noted.
 void catch_interrupt();
 

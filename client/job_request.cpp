@@ -4,6 +4,9 @@
 #include "client/map_files.h"
 #include "client/upload.h"
 #include "client/whole_file.h"
+#include "format/cli/report.h"
+#include "format/cli/suggestion.h"
+#include "settings/message/job_settings.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +17,7 @@
 namespace drtv::client {
 namespace {
 
-tl::expected<v1::Region, std::string> parse_region(const std::string& text) {
+cli::Result<v1::Region> parse_region(const std::string& text) {
     v1::Region region;
     std::array<double, 4> values{};
     const char* at = text.data();
@@ -24,7 +27,8 @@ tl::expected<v1::Region, std::string> parse_region(const std::string& text) {
         const bool is_last = n + 1 == values.size();
         const bool separated = is_last ? stopped == end : stopped != end && *stopped == ',';
         if (error != std::errc() || !separated)
-            return tl::unexpected(fmt::format("the region '{}' is not X0,Y0,X1,Y1 in metres", text));
+            return cli::fail(cli::exit_usage,
+                             fmt::format("the region '{}' is not X0,Y0,X1,Y1 in metres", text));
         at = stopped + 1;
     }
     region.set_x0(values[0]);
@@ -34,18 +38,51 @@ tl::expected<v1::Region, std::string> parse_region(const std::string& text) {
     return region;
 }
 
-tl::expected<v1::Job, std::string> wanted_job(const SubmitOptions& options) {
+// Why `word` is none of the words, which are what `of` says.
+std::string unknown(const std::string& of, const std::string& word, const std::vector<std::string>& words) {
+    return cli::with_hint(fmt::format("there is no {} \"{}\"", of, word),
+                          cli::suggestion(word, words),
+                          "bake submit --help lists them");
+}
+
+std::vector<std::string> setting_names() {
+    std::vector<std::string> names;
+    for (const settings::Setting& setting : settings::table())
+        names.emplace_back(setting.name);
+    return names;
+}
+
+// "key=value" of `--set`.
+cli::Result<void> set_setting(v1::Job& job, const std::string& argument) {
+    const std::size_t equals = argument.find('=');
+    if (equals == std::string::npos || equals == 0)
+        return cli::fail(cli::exit_usage, fmt::format("--set takes key=value, not '{}'", argument));
+    const std::string key = argument.substr(0, equals);
+    const settings::Setting* setting = settings::find_setting(key);
+    if (setting == nullptr)
+        return cli::fail(cli::exit_usage, unknown("setting", key, setting_names()));
+    const auto value = settings::parse(*setting, argument.substr(equals + 1));
+    if (!value)
+        return cli::fail(cli::exit_usage, value.error());
+    settings::set_field(job, *setting, *value);
+    return {};
+}
+
+cli::Result<v1::Job> wanted_job(const SubmitOptions& options) {
+    if (!settings::preset(options.preset)) {
+        return cli::fail(
+            cli::exit_usage,
+            unknown(
+                "preset", options.preset, {settings::preset_names.begin(), settings::preset_names.end()}));
+    }
     v1::Job job;
     job.mutable_settings()->set_preset(options.preset);
-    auto& overrides = *job.mutable_settings()->mutable_overrides();
     for (const std::string& setting : options.settings) {
-        const std::size_t equals = setting.find('=');
-        if (equals == std::string::npos || equals == 0)
-            return tl::unexpected(fmt::format("--set takes key=value, not '{}'", setting));
-        overrides[setting.substr(0, equals)] = setting.substr(equals + 1);
+        if (auto set = set_setting(job, setting); !set)
+            return tl::unexpected(set.error());
     }
     if (options.exact)
-        overrides["tolerance"] = "0";
+        job.set_tolerance(0);
     if (!options.region.empty()) {
         const auto region = parse_region(options.region);
         if (!region)
@@ -57,7 +94,7 @@ tl::expected<v1::Job, std::string> wanted_job(const SubmitOptions& options) {
 
 }  // namespace
 
-tl::expected<v1::Job, std::string> prepare_job(Connection& connection, const SubmitOptions& options) {
+cli::Result<v1::Job> prepare_job(ServerConnection& connection, const SubmitOptions& options) {
     auto job = wanted_job(options);
     if (!job)
         return job;
@@ -74,7 +111,7 @@ tl::expected<v1::Job, std::string> prepare_job(Connection& connection, const Sub
     if (!map)
         return tl::unexpected(map.error());
     for (const std::string& warning : map->warnings())
-        warn(warning);
+        cli::warn(warning);
     job->set_map(map->name());
     return job;
 }

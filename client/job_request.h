@@ -2,11 +2,10 @@
 #pragma once
 
 #include "client/connection.h"
+#include "format/cli/failure.h"
 
 #include <string>
 #include <vector>
-
-#include <tl/expected.hpp>
 
 namespace drtv::client {
 
@@ -18,11 +17,11 @@ struct SubmitOptions {
     bool exact = false;                 // tolerance=0
     bool wait = false;
     std::string pull_folder;  // empty: pull nothing
+    double timeout_s = 0;     // of --wait and --pull; 0: without a limit
 };
 
 // Checks the options, makes the folder to pull to, uploads the map, tells its warnings, and gives the job.
 // From the upload on, ctrl-C is caught (interrupt.h).
-[[nodiscard]] tl::expected<v1::Job, std::string> prepare_job(Connection& connection,
-                                                             const SubmitOptions& options);
+[[nodiscard]] cli::Result<v1::Job> prepare_job(ServerConnection& connection, const SubmitOptions& options);
 
 }  // namespace drtv::client

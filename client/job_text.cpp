@@ -1,6 +1,7 @@
 #include "client/job_text.h"
 
 #include "client/number_text.h"
+#include "settings/message/job_settings.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,19 @@ using Json = nlohmann::ordered_json;
 // What stands behind the collection in a resource's name: "12" of "jobs/12".
 std::string last_part(const std::string& resource) {
     return resource.substr(resource.find('/') + 1);
+}
+
+// Those that are not the preset's.
+void add_settings(const Job& job, Json& json) {
+    const auto settings = settings::read_settings(job);
+    const auto preset = settings::preset(job.settings().preset());
+    if (!settings || !preset)
+        return;
+    for (const settings::Setting& setting : settings::table()) {
+        const double value = settings::value_of(*settings, setting);
+        if (value != settings::value_of(*preset, setting))
+            json["set"][std::string(setting.name)] = value;
+    }
 }
 
 }  // namespace
@@ -42,6 +56,7 @@ bool has_ended(const Job& job) {
 
 std::string json_line(const Job& job) {
     Json json;
+    json["kind"] = "job";
     json["job"] = job_number(job);
     json["state"] = state_name(job.state());
     json["map"] = last_part(job.map());
@@ -58,8 +73,7 @@ std::string json_line(const Job& job) {
     json["seconds_left"] = job.seconds_left();
     json["created"] = job.create_time().seconds();
     json["ended"] = job.end_time().seconds();
-    for (const auto& [key, value] : job.settings().overrides())
-        json["set"][key] = value;
+    add_settings(job, json);
     if (job.has_region()) {
         const auto& region = job.region();
         json["region"] = {region.x0(), region.y0(), region.x1(), region.y1()};

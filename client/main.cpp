@@ -5,6 +5,11 @@
 #include "client/command_pull.h"
 #include "client/command_submit.h"
 #include "client/command_watch.h"
+#include "format/cli/option_checks.h"
+#include "format/cli/parse.h"
+#include "format/cli/report.h"
+#include "format/cli/version.h"
+#include "settings/table.h"
 
 #include <CLI/CLI.hpp>
 
@@ -24,29 +29,38 @@ struct Arguments {
     std::string folder;
     bool clear = false;
     // The subcommand. Set when the line has been parsed.
-    std::function<int(Connection&)> run;
+    std::function<cli::Result<cli::ExitCode>(ServerConnection&)> run;
 };
 
 void add_connection_options(CLI::App& app, ConnectionOptions& options) {
     app.add_option("--server", options.server, "Address of bakerd")
         ->envname("DRTV_SERVER")
         ->capture_default_str();
-    app.add_flag("--json", options.json, "Print JSON, one object a line");
+    app.add_flag("--json", options.json, "Print JSON, one object per line (bake.schema.json)");
     app.add_option("--tls-ca", options.tls_ca, "Authority that signs the server's certificate (PEM)");
     app.add_option("--tls-cert", options.tls_certificate, "This client's certificate (PEM)");
     app.add_option("--tls-key", options.tls_key, "Its key (PEM)");
 }
 
+void add_timeout(CLI::App& command, SubmitOptions& submit) {
+    command
+        .add_option("--timeout",
+                    submit.timeout_s,
+                    "Seconds to wait for the job's end; then the exit status is 8, and the job goes on")
+        ->check(cli::positive_number());
+}
+
 void add_map_options(CLI::App& command, SubmitOptions& submit) {
     command.add_option("MAP", submit.maps, "glTF files (.gltf, .glb), or folders of them")->required();
     command.add_option("--region", submit.region, "X0,Y0,X1,Y1 in world metres: only the sectors it touches");
-    command.add_option("--preset", submit.preset, "draft, console or pc")->capture_default_str();
     command
-        .add_option("--set",
-                    submit.settings,
-                    "key=value: rays, bounces, reach (m), min_distance (m), error, tolerance, lprt, "
-                    "lprt_bounces, lprt_rays")
+        .add_option(
+            "--preset", submit.preset, "draft (few rays), console, or pc (with local radiance transfer)")
+        ->capture_default_str();
+    command
+        .add_option("--set", submit.settings, "key=value: changes one setting of the preset; listed below")
         ->allow_extra_args(false);
+    command.footer(settings::help_text());
     command.add_flag("--exact", submit.exact, "Bake whatever could differ in one bit: tolerance=0");
 }
 
@@ -58,10 +72,12 @@ void add_map_commands(CLI::App& app, Arguments& to) {
     plan->add_option("--png", to.picture, "Draw the plan from above to this file");
     submit->add_flag("--wait", to.submit.wait, "Show progress until the job ends");
     submit->add_option("--pull", to.submit.pull_folder, "Wait, then write the sector files to this folder");
-    submit->callback(
-        [&to] { to.run = [&to](Connection& connection) { return run_submit(connection, to.submit); }; });
+    add_timeout(*submit, to.submit);
+    submit->callback([&to] {
+        to.run = [&to](ServerConnection& connection) { return run_submit(connection, to.submit); };
+    });
     plan->callback([&to] {
-        to.run = [&to](Connection& connection) { return run_plan(connection, to.submit, to.picture); };
+        to.run = [&to](ServerConnection& connection) { return run_plan(connection, to.submit, to.picture); };
     });
 }
 
@@ -73,16 +89,20 @@ void add_job_commands(CLI::App& app, Arguments& to) {
     CLI::App* pull = app.add_subcommand("pull", "Write a job's finished sector files to a folder");
     for (CLI::App* command : {status, watch, cancel, pull})
         command->add_option("JOB", to.job, "Number of the job")->required();
+    add_timeout(*watch, to.submit);
     pull->add_option("--out", to.folder, "Folder for the files; made when missing")->required();
     list->callback([&to] { to.run = run_list; });
     status->callback(
-        [&to] { to.run = [&to](Connection& connection) { return run_status(connection, to.job); }; });
-    watch->callback(
-        [&to] { to.run = [&to](Connection& connection) { return run_watch(connection, to.job); }; });
+        [&to] { to.run = [&to](ServerConnection& connection) { return run_status(connection, to.job); }; });
+    watch->callback([&to] {
+        to.run = [&to](ServerConnection& connection) {
+            return run_watch(connection, to.job, to.submit.timeout_s);
+        };
+    });
     cancel->callback(
-        [&to] { to.run = [&to](Connection& connection) { return run_cancel(connection, to.job); }; });
+        [&to] { to.run = [&to](ServerConnection& connection) { return run_cancel(connection, to.job); }; });
     pull->callback([&to] {
-        to.run = [&to](Connection& connection) { return run_pull(connection, to.job, to.folder); };
+        to.run = [&to](ServerConnection& connection) { return run_pull(connection, to.job, to.folder); };
     });
 }
 
@@ -90,44 +110,31 @@ void add_cache_command(CLI::App& app, Arguments& to) {
     CLI::App* cache = app.add_subcommand("cache", "Size and hit rate of the results that bakerd keeps");
     cache->add_flag("--clear", to.clear, "Remove all that no running job needs");
     cache->callback(
-        [&to] { to.run = [&to](Connection& connection) { return run_cache(connection, to.clear); }; });
-}
-
-// Gives the exit status.
-int end_parse(const CLI::App& app, const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0)
-        return app.exit(error);  // --help, --version
-    const bool unknown_command = app.get_subcommands().empty() && !app.remaining().empty();
-    const std::string what =
-        unknown_command ? "there is no command '" + app.remaining().front() + "'" : error.what();
-    complain(what + "; bake --help lists what there is");
-    return 2;
+        [&to] { to.run = [&to](ServerConnection& connection) { return run_cache(connection, to.clear); }; });
 }
 
 }  // namespace
 }  // namespace drtv::client
 
 int main(int argc, char** argv) {
-    using namespace drtv::client;
+    using namespace drtv;
     // gRPC tells failures in paragraphs of its own; ours are one sentence. The variable, when set, wins.
     ::setenv("GRPC_VERBOSITY", "NONE", 0);
-    CLI::App app{"bake submits maps to bakerd and pulls the baked sector files."};
+    CLI::App app{"bake submits maps to bakerd and pulls the baked sector files.", "bake"};
     app.require_subcommand(1);
-    app.set_version_flag("--version", "bake " DRTV_VERSION);
-    Arguments arguments;
-    add_connection_options(app, arguments.connection);
-    add_map_commands(app, arguments);
-    add_job_commands(app, arguments);
-    add_cache_command(app, arguments);
+    app.set_version_flag("--version", cli::version_text("bake"));
+    app.footer("bake COMMAND --help lists a command's options.\n\n" + cli::exit_code_help("bake"));
+    client::Arguments arguments;
+    client::add_connection_options(app, arguments.connection);
+    client::add_map_commands(app, arguments);
+    client::add_job_commands(app, arguments);
+    client::add_cache_command(app, arguments);
     for (CLI::App* command : app.get_subcommands({}))
         command->fallthrough();
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return end_parse(app, error);
-    }
-    auto connection = connect(arguments.connection);
+    if (const auto ended = cli::parse(app, argc, argv))
+        return *ended;
+    auto connection = client::connect(arguments.connection);
     if (!connection)
-        return complain(connection.error());
-    return arguments.run(*connection);
+        return cli::complain(connection.error());
+    return cli::end_program(arguments.run(*connection));
 }

@@ -17,9 +17,7 @@ namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
 // Adds the glTF files that stand in a folder, which the command line calls `argument`.
-tl::expected<void, std::string> add_folder(const fs::path& folder,
-                                           const std::string& argument,
-                                           Paths& roots) {
+cli::Result<void> add_folder(const fs::path& folder, const std::string& argument, Paths& roots) {
     const std::size_t count_before = roots.size();
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(folder, code)) {
@@ -29,27 +27,29 @@ tl::expected<void, std::string> add_folder(const fs::path& folder,
             roots.push_back(entry.path());
     }
     if (code)
-        return tl::unexpected(fmt::format("cannot read the folder {}: {}", argument, code.message()));
+        return cli::fail(cli::exit_unreadable,
+                         fmt::format("cannot read the folder {}: {}", argument, code.message()));
     if (roots.size() == count_before)
-        return tl::unexpected(fmt::format("the folder {} holds no .glb or .gltf file", argument));
+        return cli::fail(cli::exit_unreadable,
+                         fmt::format("the folder {} holds no .glb or .gltf file", argument));
     return {};
 }
 
-tl::expected<void, std::string> add_argument(const std::string& argument, Paths& roots) {
+cli::Result<void> add_argument(const std::string& argument, Paths& roots) {
     std::error_code code;
     const fs::path path = fs::weakly_canonical(fs::absolute(argument, code), code);
     if (!fs::exists(path, code))
-        return tl::unexpected(fmt::format("the map {} does not exist", argument));
+        return cli::fail(cli::exit_unreadable, fmt::format("the map {} does not exist", argument));
     if (fs::is_directory(path, code))
         return add_folder(path, argument, roots);
     // A pipe or a device would never end.
     if (!fs::is_regular_file(path, code))
-        return tl::unexpected(fmt::format("the map {} is not a regular file", argument));
+        return cli::fail(cli::exit_unreadable, fmt::format("the map {} is not a regular file", argument));
     roots.push_back(path);
     return {};
 }
 
-tl::expected<Paths, std::string> find_roots(const std::vector<std::string>& arguments) {
+cli::Result<Paths> find_roots(const std::vector<std::string>& arguments) {
     Paths roots;
     for (const std::string& argument : arguments) {
         if (auto added = add_argument(argument, roots); !added)
@@ -85,7 +85,7 @@ void insert_files(const fs::path& root, std::set<fs::path>& paths) {
     }
 }
 
-tl::expected<LocalFile, std::string> local_file(const fs::path& path, const fs::path& folder) {
+cli::Result<LocalFile> local_file(const fs::path& path, const fs::path& folder) {
     const auto digest = sha256_of_file(path.string());
     if (!digest)
         return tl::unexpected(digest.error());
@@ -100,7 +100,7 @@ tl::expected<LocalFile, std::string> local_file(const fs::path& path, const fs::
 
 }  // namespace
 
-tl::expected<LocalMap, std::string> collect_map(const std::vector<std::string>& arguments) {
+cli::Result<LocalMap> collect_map(const std::vector<std::string>& arguments) {
     const auto roots = find_roots(arguments);
     if (!roots)
         return tl::unexpected(roots.error());

@@ -1,11 +1,11 @@
 // Which files a map is made of: the glTF files named on the command line and what they refer to.
 #pragma once
 
+#include "format/cli/failure.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <tl/expected.hpp>
 
 namespace drtv::client {
 
@@ -23,6 +23,6 @@ struct LocalMap {
 
 // `arguments` are .gltf or .glb files, or folders of them. A file that a glTF names but that is not there is
 // left out: the server's importer knows whether it matters, and says so.
-[[nodiscard]] tl::expected<LocalMap, std::string> collect_map(const std::vector<std::string>& arguments);
+[[nodiscard]] cli::Result<LocalMap> collect_map(const std::vector<std::string>& arguments);
 
 }  // namespace drtv::client

@@ -97,9 +97,9 @@ PixelRect mark_of(const v1::MapChange& changed, const Layout& layout) {
 
 }  // namespace
 
-tl::expected<void, std::string> write_plan_picture(const v1::Plan& plan, const std::string& path) {
+cli::Result<void> write_plan_picture(const v1::Plan& plan, const std::string& path) {
     if (plan.sectors().empty())
-        return tl::unexpected(std::string("the plan has no sectors, so there is nothing to draw"));
+        return cli::fail(cli::exit_invalid, "the plan has no sectors, so there is nothing to draw");
     const Layout layout = layout_of(plan);
     Canvas canvas(layout.columns() * layout.side, layout.rows() * layout.side, background);
     for (const v1::PlannedSector& sector : plan.sectors())

@@ -2,16 +2,14 @@
 #pragma once
 
 #include "drtv/v1/job.pb.h"
+#include "format/cli/failure.h"
 
 #include <string>
-
-#include <tl/expected.hpp>
 
 namespace drtv::client {
 
 // Sectors that hit are green, near hits yellow, those to be baked red; what changed is framed in blue. Writes
 // a PNG whole or not at all.
-[[nodiscard]] tl::expected<void, std::string> write_plan_picture(const v1::Plan& plan,
-                                                                 const std::string& path);
+[[nodiscard]] cli::Result<void> write_plan_picture(const v1::Plan& plan, const std::string& path);
 
 }  // namespace drtv::client

@@ -36,9 +36,9 @@ class Sha256 {
 
 }  // namespace
 
-tl::expected<std::string, std::string> sha256_of_file(const std::string& path) {
+cli::Result<std::string> sha256_of_file(const std::string& path) {
     const auto fail = [&] {
-        return tl::unexpected(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+        return cli::fail(cli::exit_unreadable, fmt::format("cannot read {}: {}", path, std::strerror(errno)));
     };
     std::ifstream file(path, std::ios::binary);
     if (!file)

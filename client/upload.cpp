@@ -41,7 +41,7 @@ bool is_passing(const grpc::Status& status) {
     return code == grpc::StatusCode::ABORTED || code == grpc::StatusCode::UNAVAILABLE;
 }
 
-grpc::Status find_missing(Connection& connection,
+grpc::Status find_missing(ServerConnection& connection,
                           const std::vector<const LocalFile*>& files,
                           v1::FindMissingBlobsResponse& response) {
     v1::FindMissingBlobsRequest request;
@@ -54,15 +54,15 @@ grpc::Status find_missing(Connection& connection,
     return connection.blobs->FindMissingBlobs(&context, request, &response);
 }
 
-grpc::Status send_blob(Connection& connection,
-                       const LocalFile& file,
-                       std::int64_t offset,
-                       Transfer& transfer) {
+cli::Result<grpc::Status> send_blob(ServerConnection& connection,
+                                    const LocalFile& file,
+                                    std::int64_t offset,
+                                    Transfer& transfer) {
     std::ifstream input(file.disk_path, std::ios::binary);
     input.seekg(offset);
     if (!input)
-        return {grpc::StatusCode::NOT_FOUND,
-                fmt::format("cannot read {}: {}", file.disk_path, std::strerror(errno))};
+        return cli::fail(cli::exit_unreadable,
+                         fmt::format("cannot read {}: {}", file.disk_path, std::strerror(errno)));
     grpc::ClientContext context;
     v1::UploadBlobResponse response;
     const auto writer = connection.blobs->UploadBlob(&context, &response);
@@ -87,9 +87,7 @@ grpc::Status send_blob(Connection& connection,
     return writer->Finish();
 }
 
-tl::expected<void, std::string> upload_file(Connection& connection,
-                                            const LocalFile& file,
-                                            Transfer& transfer) {
+cli::Result<void> upload_file(ServerConnection& connection, const LocalFile& file, Transfer& transfer) {
     const std::int64_t sent_before = transfer.sent;
     grpc::Status status;
     for (int attempt = 0; attempt < upload_attempts && !interrupted(); ++attempt) {
@@ -109,20 +107,24 @@ tl::expected<void, std::string> upload_file(Connection& connection,
         const std::int64_t received_bytes = missing.missing(0).received_bytes();
         const std::int64_t offset = received_bytes <= file.size_bytes ? received_bytes : 0;
         transfer.sent = sent_before + offset;
-        status = send_blob(connection, file, offset, transfer);
+        const auto sent = send_blob(connection, file, offset, transfer);
+        if (!sent)
+            return tl::unexpected(sent.error());
+        status = *sent;
         if (status.ok())
             return {};
         if (!is_passing(status))
             break;
     }
     if (interrupted())
-        return tl::unexpected(std::string("interrupted; what was uploaded stays with the server"));
-    return tl::unexpected(fmt::format("cannot upload {}: {}", file.disk_path, connection.sentence(status)));
+        return cli::fail(cli::exit_interrupted, "interrupted; what was uploaded stays with the server");
+    const cli::Failure failure = connection.failure(status);
+    return cli::fail(failure.code, fmt::format("cannot upload {}: {}", file.disk_path, failure.sentence));
 }
 
-tl::expected<void, std::string> upload_missing(Connection& connection,
-                                               const LocalMap& map,
-                                               const v1::FindMissingBlobsResponse& missing) {
+cli::Result<void> upload_missing(ServerConnection& connection,
+                                 const LocalMap& map,
+                                 const v1::FindMissingBlobsResponse& missing) {
     Transfer transfer;
     for (const auto& wanted : missing.missing())
         transfer.total += wanted.blob().size_bytes();
@@ -149,20 +151,20 @@ v1::CreateMapRequest creation_of(const LocalMap& map) {
 
 }  // namespace
 
-tl::expected<v1::Map, std::string> upload_map(Connection& connection, const LocalMap& map) {
+cli::Result<v1::Map> upload_map(ServerConnection& connection, const LocalMap& map) {
     std::vector<const LocalFile*> all;
     for (const LocalFile& file : map.files)
         all.push_back(&file);
     v1::FindMissingBlobsResponse missing;
     if (const grpc::Status status = find_missing(connection, all, missing); !status.ok())
-        return tl::unexpected(connection.sentence(status));
+        return tl::unexpected(connection.failure(status));
     if (auto uploaded = upload_missing(connection, map, missing); !uploaded)
         return tl::unexpected(uploaded.error());
     grpc::ClientContext context;
     v1::Map created;
     const grpc::Status status = connection.maps->CreateMap(&context, creation_of(map), &created);
     if (!status.ok())
-        return tl::unexpected(connection.sentence(status));
+        return tl::unexpected(connection.failure(status, cli::exit_invalid));
     return created;
 }
 

@@ -3,15 +3,14 @@
 
 #include "client/connection.h"
 #include "client/map_files.h"
+#include "format/cli/failure.h"
 
 #include <string>
-
-#include <tl/expected.hpp>
 
 namespace drtv::client {
 
 // Uploads what the server lacks of a map and creates it; gives it as the server does, with its resource name.
 // Shows progress. A broken line is tried again for a while, and ctrl-C ends the upload (interrupt.h).
-[[nodiscard]] tl::expected<v1::Map, std::string> upload_map(Connection& connection, const LocalMap& map);
+[[nodiscard]] cli::Result<v1::Map> upload_map(ServerConnection& connection, const LocalMap& map);
 
 }  // namespace drtv::client

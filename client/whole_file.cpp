@@ -23,7 +23,7 @@ int write_all(int fd, std::string_view bytes) {
             return n < 0 ? errno : EIO;
         bytes.remove_prefix(static_cast<std::size_t>(n));
     }
-    return 0;
+    return cli::exit_done;
 }
 
 // 0, or what went wrong; then no file is left.
@@ -49,7 +49,8 @@ Done write_whole(const std::string& path, const std::string& bytes) {
         ::unlink(temporary.c_str());
     }
     if (error != 0)
-        return tl::unexpected(fmt::format("cannot write {}: {}", path, std::strerror(error)));
+        return cli::fail(cli::exit_unreadable,
+                         fmt::format("cannot write {}: {}", path, std::strerror(error)));
     return {};
 }
 
@@ -59,7 +60,7 @@ Done make_folder(const std::string& folder) {
     if (!code && std::filesystem::is_directory(folder, code))
         return {};
     const std::string why = code ? code.message() : "it is a file";
-    return tl::unexpected(fmt::format("cannot make the folder '{}': {}", folder, why));
+    return cli::fail(cli::exit_unreadable, fmt::format("cannot make the folder '{}': {}", folder, why));
 }
 
 }  // namespace drtv::client

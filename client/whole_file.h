@@ -1,13 +1,13 @@
 // Writes files and folders that other programs look at.
 #pragma once
 
-#include <string>
+#include "format/cli/failure.h"
 
-#include <tl/expected.hpp>
+#include <string>
 
 namespace drtv::client {
 
-using Done = tl::expected<void, std::string>;
+using Done = cli::Result<void>;
 
 // Writes a file: it appears whole or not at all. The sentence names the file.
 [[nodiscard]] Done write_whole(const std::string& path, const std::string& bytes);

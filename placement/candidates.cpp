@@ -41,7 +41,7 @@ void visit_columns(double lattice_m, const Square& square, Visit visit) {
     }
 }
 
-float distance_at(const Position& position, const Input& input, const Settings& settings) {
+float distance_at(const Position& position, const Input& input, const PlacementSettings& settings) {
     float distance_m = settings.min_distance_m;
     bool in_volume = false;
     const glm::dvec3 point(metres(position));
@@ -160,7 +160,8 @@ float lattice_side_m(Kind kind, float min_distance_m) {
                                     : std::min(ground_lattice_m, distance_m);
 }
 
-std::vector<float> distances_kept(const Settings& settings, std::span<const SpacingVolume> spacings) {
+std::vector<float> distances_kept(const PlacementSettings& settings,
+                                  std::span<const SpacingVolume> spacings) {
     std::vector<float> distances = {settings.min_distance_m};
     for (const SpacingVolume& spacing : spacings) {
         if (std::ranges::find(distances, spacing.min_distance_m) == distances.end())
@@ -171,8 +172,8 @@ std::vector<float> distances_kept(const Settings& settings, std::span<const Spac
 
 std::vector<Candidate> propose(const Square& square,
                                const Input& input,
-                               const Surroundings& surroundings,
-                               const Settings& settings) {
+                               const SceneQueries& queries,
+                               const PlacementSettings& settings) {
     std::vector<Candidate> candidates;
     std::vector<ColumnHit> hits;
     for (const float distance_m : distances_kept(settings, input.spacings)) {
@@ -191,7 +192,7 @@ std::vector<Candidate> propose(const Square& square,
                     propose_on_vegetation(column, input.vegetation, proposals);
                     return;
                 }
-                surroundings.column({column.x_m, column.y_m}, hits);
+                queries.column({column.x_m, column.y_m}, hits);
                 propose_on_ground(hits, proposals);
             });
         }

@@ -44,13 +44,13 @@ struct Square {
 };
 
 // The distances that probes keep: the map's own first, then those of volumes, each once.
-[[nodiscard]] std::vector<float> distances_kept(const Settings& settings,
+[[nodiscard]] std::vector<float> distances_kept(const PlacementSettings& settings,
                                                 std::span<const SpacingVolume> spacings);
 
 // All proposals in the square, by priority.
 [[nodiscard]] std::vector<Candidate> propose(const Square& square,
                                              const Input& input,
-                                             const Surroundings& surroundings,
-                                             const Settings& settings);
+                                             const SceneQueries& queries,
+                                             const PlacementSettings& settings);
 
 }  // namespace drtv::placement

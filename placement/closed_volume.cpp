@@ -70,8 +70,8 @@ struct ClosedVolume::Mesh {
         side = static_cast<std::int32_t>(
             std::clamp(std::sqrt(static_cast<double>(surface.triangles.size()) / per_square), 1.0, most));
         // Fans of long triangles lie in many squares each.
-        constexpr std::size_t most_entries = 16;  // for each triangle, of all together
-        while (side > 1 && entries() > most_entries * surface.triangles.size())
+        constexpr std::size_t max_entries = 16;  // for each triangle, of all together
+        while (side > 1 && entries() > max_entries * surface.triangles.size())
             side /= 2;
         squares.resize(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
         for (std::uint32_t n = 0; n < surface.triangles.size(); ++n) {

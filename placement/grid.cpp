@@ -39,11 +39,8 @@ void span_probes(std::span<const GridProbe> probes, ProbeGrid& grid) {
 
 class GridBuild {
   public:
-    GridBuild(std::int32_t i,
-              std::int32_t j,
-              std::span<const GridProbe> probes,
-              const Surroundings& surroundings)
-        : probes_(probes), surroundings_(surroundings) {
+    GridBuild(std::int32_t i, std::int32_t j, std::span<const GridProbe> probes, const SceneQueries& queries)
+        : probes_(probes), queries_(queries) {
         grid_.cells.fill(no_probe);
         if (probes.empty())
             return;
@@ -58,7 +55,7 @@ class GridBuild {
             return grid_;
         const float bottom_m = metres(corner_).z;
         const float top_m = metres(corner_ + Position(0, 0, cells_along * cell_height())).z;
-        spaces_.emplace(Position(corner_.x, corner_.y, 0), bottom_m, top_m, places_, surroundings_);
+        spaces_.emplace(Position(corner_.x, corner_.y, 0), bottom_m, top_m, places_, queries_);
         std::size_t cell = 0;
         for (std::int32_t z = 0; z < cells_along; ++z) {
             for (std::int32_t y = 0; y < cells_along; ++y) {
@@ -87,10 +84,10 @@ class GridBuild {
             ++grid_.buried_cells;
             return std::ranges::min(order_).probe;
         }
-        if (const auto seen = best_seen(surroundings_.hidden))
+        if (const auto seen = best_seen(queries_.hidden))
             return *seen;
         ++grid_.blind_cells;
-        return best_seen(surroundings_.separated).value_or(std::ranges::min(order_).probe);
+        return best_seen(queries_.separated).value_or(std::ranges::min(order_).probe);
     }
 
     [[nodiscard]] std::int32_t cell_height() const {
@@ -173,7 +170,7 @@ class GridBuild {
     }
 
     const std::span<const GridProbe> probes_;
-    const Surroundings& surroundings_;
+    const SceneQueries& queries_;
     ProbeGrid grid_;
     Position corner_{};              // of the sector, at the grid's bottom
     std::vector<glm::vec3> places_;  // of the probes
@@ -189,9 +186,9 @@ class GridBuild {
 ProbeGrid build_grid(std::int32_t i,
                      std::int32_t j,
                      std::span<const GridProbe> probes,
-                     const Surroundings& surroundings) {
+                     const SceneQueries& queries) {
     assert(probes.size() <= max_probes);
-    return GridBuild(i, j, probes, surroundings).run();
+    return GridBuild(i, j, probes, queries).run();
 }
 
 }  // namespace drtv::placement

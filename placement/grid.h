@@ -1,4 +1,4 @@
-// The grid that finds a position's probe (s17): 16 x 16 x 16 cells over the sector, one byte each.
+// The grid that finds a position's probe (slide 17): 16 x 16 x 16 cells over the sector, one byte each.
 #pragma once
 
 #include "placement/placement.h"
@@ -33,6 +33,6 @@ struct GridProbe {
 [[nodiscard]] ProbeGrid build_grid(std::int32_t i,
                                    std::int32_t j,
                                    std::span<const GridProbe> probes,
-                                   const Surroundings& surroundings);
+                                   const SceneQueries& queries);
 
 }  // namespace drtv::placement

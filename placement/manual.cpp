@@ -12,9 +12,9 @@ bool is_before(const Position& a, const Position& b) {
     return std::tie(a.y, a.x, a.z) < std::tie(b.y, b.x, b.z);
 }
 
-std::vector<Manual> manual_probes(std::span<const ManualProbe> manual) {
+std::vector<Manual> manual_probes(std::span<const HandPlacedProbe> manual) {
     std::vector<Manual> probes;
-    for (const ManualProbe& probe : manual)
+    for (const HandPlacedProbe& probe : manual)
         probes.push_back({to_position(probe.position), probe.interiors});
     std::ranges::stable_sort(probes, is_before, &Manual::position);
     std::vector<Manual> once;

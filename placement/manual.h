@@ -17,7 +17,7 @@ struct Manual {
 [[nodiscard]] bool is_before(const Position& a, const Position& b);
 
 // Each place once, in that order.
-[[nodiscard]] std::vector<Manual> manual_probes(std::span<const ManualProbe> manual);
+[[nodiscard]] std::vector<Manual> manual_probes(std::span<const HandPlacedProbe> manual);
 
 // Whether its light is meant for the position.
 [[nodiscard]] bool serves(const Manual& probe, const Position& position);

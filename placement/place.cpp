@@ -29,11 +29,8 @@ constexpr std::int32_t sector_side = sector_size_m * units_per_m;
 
 class Placer {
   public:
-    Placer(const Input& input, const Surroundings& surroundings, const Settings& settings)
-        : input_(input),
-          surroundings_(surroundings),
-          settings_(settings),
-          manual_(manual_probes(input.manual)) {
+    Placer(const Input& input, const SceneQueries& queries, const PlacementSettings& settings)
+        : input_(input), queries_(queries), settings_(settings), manual_(manual_probes(input.manual)) {
         for (std::size_t n = 0; n < manual_.size(); ++n)
             manual_index_.add(manual_[n].position, n);
     }
@@ -71,7 +68,7 @@ class Placer {
     }
 
     [[nodiscard]] StandsAt stands(const Position& position) {
-        const StandsAt at = stands_at(position, surroundings_);
+        const StandsAt at = stands_at(position, queries_);
         placement_.solid_tests.push_back({position, at.to_flip});
         return at;
     }
@@ -83,7 +80,7 @@ class Placer {
     }
 
     [[nodiscard]] bool sees(const Position& a, const Position& b) const {
-        return !surroundings_.separated(metres(a), metres(b));
+        return !queries_.separated(metres(a), metres(b));
     }
 
     // Whether a probe takes the place of another.
@@ -120,8 +117,7 @@ class Placer {
                 if (sector_of(place.x) != sector_of(from.position.x) ||
                     sector_of(place.y) != sector_of(from.position.y) || in_volume(place))
                     continue;
-                if (leads_out(from.position, place, stand, surroundings_) &&
-                    stands(place).stand == Stand::free)
+                if (leads_out(from.position, place, stand, queries_) && stands(place).stand == Stand::free)
                     return place;
             }
         }
@@ -138,8 +134,8 @@ class Placer {
         const glm::dvec2 corner(input_.i * sector_size_m, input_.j * sector_size_m);
         std::vector<Buried> buried;
         const Square square{corner - margin_m, corner + double{sector_size_m} + margin_m};
-        Report& report = placement_.report;
-        for (const Candidate& candidate : propose(square, input_, surroundings_, settings_)) {
+        PlacementReport& report = placement_.report;
+        for (const Candidate& candidate : propose(square, input_, queries_, settings_)) {
             const bool ours = in_sector(candidate.position);
             report.candidates += ours ? 1 : 0;
             if (in_volume(candidate.position)) {
@@ -161,7 +157,7 @@ class Placer {
         std::vector<Candidate> higher;
         PlanIndex higher_index;
         std::vector<Candidate> moved;
-        Report& report = placement_.report;
+        PlacementReport& report = placement_.report;
         for (const auto& [candidate, at] : buried) {
             const bool ours = in_sector(candidate.position);
             const std::optional<Position> place = free_place(candidate, at.stand);
@@ -198,15 +194,15 @@ class Placer {
         std::ranges::copy_if(kept_, std::back_inserter(own), is_ours);
         Thinned left = thin(
             own, max_probes - manual_count, [&](const Position& a, const Position& b) { return sees(a, b); });
-        Report& report = placement_.report;
+        PlacementReport& report = placement_.report;
         report.used_distance_m = settings_.min_distance_m * left.growth;
         report.thinned = static_cast<std::uint32_t>(own.size() - left.probes.size());
         return std::move(left.probes);
     }
 
     const Input& input_;
-    const Surroundings& surroundings_;
-    const Settings& settings_;
+    const SceneQueries& queries_;
+    const PlacementSettings& settings_;
     const std::vector<Manual> manual_;  // of the whole map
     PlanIndex manual_index_;
     std::vector<Candidate> kept_;  // by priority, the moved ones last
@@ -216,26 +212,26 @@ class Placer {
 
 }  // namespace
 
-float decision_margin_m(const Settings& settings, std::span<const SpacingVolume> spacings) {
+float decision_margin_m(const PlacementSettings& settings, std::span<const SpacingVolume> spacings) {
     // A decision waits for those of higher classes, one step of at most the distance each: the ground's and
     // the vegetation's classes of each distance, then the moved ones, which also went up to half the
     // distance.
     float margin_m = 0;
-    float most_m = 0;
+    float max_m = 0;
     for (const float distance_m : distances_kept(settings, spacings)) {
         for (const Kind kind : {Kind::ground, Kind::vegetation}) {
             const std::uint32_t stride = lattice_stride(lattice_side_m(kind, distance_m), distance_m);
             margin_m += distance_m * static_cast<float>(stride * stride);
         }
-        most_m = std::max(most_m, distance_m);
+        max_m = std::max(max_m, distance_m);
     }
-    return margin_m + 2 * most_m;
+    return margin_m + 2 * max_m;
 }
 
 tl::expected<Placement, std::string> place_probes(const Input& input,
-                                                  const Surroundings& surroundings,
-                                                  const Settings& settings) {
-    return Placer(input, surroundings, settings).run();
+                                                  const SceneQueries& queries,
+                                                  const PlacementSettings& settings) {
+    return Placer(input, queries, settings).run();
 }
 
 }  // namespace drtv::placement

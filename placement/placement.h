@@ -1,4 +1,4 @@
-// Automatic placement of probes in one sector (s14-s17).
+// Automatic placement of probes in one sector (slides 14 to 17).
 //
 // Columns on a global lattice propose a probe above every up-facing surface; columns on a lattice twice as
 // wide propose one on top of the vegetation's combined bounding boxes. A proposal yields to one of higher
@@ -8,6 +8,7 @@
 #pragma once
 
 #include "placement/closed_volume.h"
+#include "placement/crossings.h"
 
 #include <drtv/conventions.h>
 
@@ -28,8 +29,8 @@ namespace drtv::placement {
 // Positions are whole multiples of 2^-10 m, so that all distances are compared exactly.
 inline constexpr std::int32_t units_per_m = position_units_per_m;
 
-// Columns stand in the middles of squares of the world with this side: s15, s16. Where probes may stand
-// nearer than 4 m, the squares are as small as that, and twice for vegetation.
+// Columns stand in the middles of squares of the world with this side: slides 15 and 16. Where probes may
+// stand nearer than 4 m, the squares are as small as that, and twice for vegetation.
 inline constexpr float ground_lattice_m = 4;
 inline constexpr float vegetation_lattice_m = 8;
 
@@ -39,16 +40,8 @@ using Position = glm::ivec3;  // world, in units of 2^-10 m
     return glm::vec3(position) * (1.0f / units_per_m);
 }
 
-struct Settings {
+struct PlacementSettings {
     float min_distance_m = 6;  // between automatic probes, 1 to 16: beyond, the margin below grows past 500 m
-};
-
-struct ColumnHit {
-    float z_m = 0;
-    bool up_facing = false;    // seen from above it is a front
-    bool down_facing = false;  // seen from below it is a front
-    bool wound_up = false;     // its corners are counter-clockwise seen from above, whatever its sides are
-    bool body = false;         // it belongs to a closed surface whose fronts look outwards
 };
 
 struct Box {
@@ -71,15 +64,8 @@ struct Met {
     std::optional<Thing> behind;  // whose back most of them met
 };
 
-// A surface that a straight way crosses.
-struct Side {
-    float distance_m = 0;
-    bool front = false;  // it comes from the front
-    bool sheet = false;  // it has two fronts and bounds no volume
-};
-
 // The scene, as functions. Each must be a pure function of its arguments; they are called from one thread.
-struct Surroundings {
+struct SceneQueries {
     // All crossings of the vertical line at (x, y) with static objects, from the top down; replaces the
     // vector.
     std::function<void(glm::vec2, std::vector<ColumnHit>&)> column;
@@ -88,7 +74,7 @@ struct Surroundings {
     // What closed surfaces bound and the point is inside of, whatever their sides and role.
     std::function<std::optional<Thing>(const glm::vec3&)> closed_around;
     // One look after the other, until so many have missed.
-    std::function<Met(const glm::vec3& origin, std::span<const Look> looks, std::size_t most_misses)>
+    std::function<Met(const glm::vec3& origin, std::span<const Look> looks, std::size_t max_misses)>
         first_met;
     // An object with a surface nearer than that, static or bounding a volume.
     std::function<std::optional<Thing>(const glm::vec3&, float within_m)> wall_within;
@@ -130,7 +116,7 @@ struct BuriedManual {
     Thing thing = 0;  // in or behind which it stands
 };
 
-struct Report {
+struct PlacementReport {
     std::uint32_t candidates = 0;         // proposals inside the sector
     std::uint32_t moved_out = 0;          // probes moved out of a solid
     std::uint32_t dropped_in_solid = 0;   // no free place within half the distance
@@ -141,14 +127,14 @@ struct Report {
 
 struct Placement {
     std::vector<PlacedProbe> probes;  // manual ones first, then by (y, x, z)
-    Report report;
+    PlacementReport report;
     std::vector<Thing> dropped_in;  // of each proposal of the sector that was dropped, what it stood in
     std::vector<BuriedManual> buried_manual;  // of the sector
     std::vector<SolidTest> solid_tests;       // on which all this rests
 };
 
 // A probe that interiors name serves these alone: it takes no probe's place outside of them.
-struct ManualProbe {
+struct HandPlacedProbe {
     glm::dvec3 position{};
     std::vector<const ClosedVolume*> interiors;
 };
@@ -162,17 +148,18 @@ struct SpacingVolume {
 struct Input {
     std::int32_t i = 0, j = 0;                // the sector
     std::span<const Box> vegetation;          // all that overlap the sector grown by decision_margin_m
-    std::span<const ManualProbe> manual;      // all manual probes of the map
+    std::span<const HandPlacedProbe> manual;  // all manual probes of the map
     std::span<const ClosedVolume> no_probes;  // all such volumes of the map
     std::span<const SpacingVolume> spacings;  // likewise; where they overlap the smallest distance counts
 };
 
-// How far from the sector's border the surroundings are asked: columns, vegetation, rays' origins.
-[[nodiscard]] float decision_margin_m(const Settings& settings, std::span<const SpacingVolume> spacings);
+// How far from the sector's border the queries are asked: columns, vegetation, rays' origins.
+[[nodiscard]] float decision_margin_m(const PlacementSettings& settings,
+                                      std::span<const SpacingVolume> spacings);
 
 // Fails with a sentence when the sector holds more than 255 manual probes.
 [[nodiscard]] tl::expected<Placement, std::string> place_probes(const Input& input,
-                                                                const Surroundings& surroundings,
-                                                                const Settings& settings);
+                                                                const SceneQueries& queries,
+                                                                const PlacementSettings& settings);
 
 }  // namespace drtv::placement

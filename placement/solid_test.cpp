@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t ring_count = 6;
 constexpr std::size_t ring_size = 8;
 constexpr std::size_t look_count = 1 + ring_count * ring_size;
-constexpr std::size_t least_backs = 39;  // four in five
+constexpr std::size_t min_backs = 39;  // four in five
 
 // Up, and then evenly over the upper half of the sphere: rings at equal steps of height, each turned against
 // the one before by half of its step (5, 12 and 13 make a right angle). The upper rings first, because they
@@ -43,23 +43,23 @@ std::span<const Look> solid_test_looks() {
 }
 
 StandsAt stands_by(const Met& met) {
-    if (met.misses == 0 && met.backs >= least_backs)
+    if (met.misses == 0 && met.backs >= min_backs)
         return {Stand::behind, met.behind.value_or(0), 1};
-    const std::size_t more_backs = least_backs - std::min(met.backs, least_backs);
+    const std::size_t more_backs = min_backs - std::min(met.backs, min_backs);
     const std::size_t to_flip = met.misses > 0 ? met.misses : more_backs;
     return {Stand::free, 0, static_cast<std::uint8_t>(to_flip)};
 }
 
-StandsAt stands_at(const Position& position, const Surroundings& surroundings) {
+StandsAt stands_at(const Position& position, const SceneQueries& queries) {
     // One says that the point is free; some more, that it takes more than a change of one to bury it.
     constexpr std::size_t enough_misses = 6;
     const glm::vec3 point = metres(position);
-    if (const auto closed = surroundings.closed_around(point))
+    if (const auto closed = queries.closed_around(point))
         return {Stand::in_solid, *closed, UINT8_MAX};
-    const StandsAt stands = stands_by(surroundings.first_met(point, solid_test_looks(), enough_misses));
+    const StandsAt stands = stands_by(queries.first_met(point, solid_test_looks(), enough_misses));
     if (stands.stand != Stand::free)
         return stands;
-    if (const auto wall = surroundings.wall_within(point, wall_clearance_m))
+    if (const auto wall = queries.wall_within(point, wall_clearance_m))
         return {Stand::in_wall, *wall, stands.to_flip};
     return stands;
 }

@@ -26,6 +26,6 @@ struct StandsAt {
 // What holds of a point that is inside no closed surface, by what its looks met.
 [[nodiscard]] StandsAt stands_by(const Met& met);
 
-[[nodiscard]] StandsAt stands_at(const Position& position, const Surroundings& surroundings);
+[[nodiscard]] StandsAt stands_at(const Position& position, const SceneQueries& queries);
 
 }  // namespace drtv::placement

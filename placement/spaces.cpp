@@ -9,7 +9,7 @@ namespace drtv::placement {
 namespace {
 
 // Less than that, and the way from line to line would run along a surface.
-constexpr float least_overlap_m = 2 * wall_clearance_m;
+constexpr float min_overlap_m = 2 * wall_clearance_m;
 
 constexpr std::int32_t step_units = sector_size_m * units_per_m / Spaces::lines_along;
 
@@ -19,8 +19,8 @@ Spaces::Spaces(const Position& corner,
                float bottom_m,
                float top_m,
                std::span<const glm::vec3> probes,
-               const Surroundings& surroundings)
-    : corner_(corner), surroundings_(surroundings) {
+               const SceneQueries& queries)
+    : corner_(corner), queries_(queries) {
     lines_.resize(static_cast<std::size_t>(lines_along) * lines_along);
     for (std::int32_t y = 0; y < lines_along; ++y) {
         for (std::int32_t x = 0; x < lines_along; ++x)
@@ -39,7 +39,7 @@ glm::vec2 Spaces::line_at(std::int32_t x, std::int32_t y) const {
 
 void Spaces::add_line(std::int32_t x, std::int32_t y, float bottom_m, float top_m) {
     Line& line = lines_[static_cast<std::size_t>(y * lines_along + x)];
-    surroundings_.column_of_spaces(line_at(x, y), line.hits);
+    queries_.column_of_spaces(line_at(x, y), line.hits);
     std::ranges::reverse(line.hits);
     for (std::size_t below = 0; below <= line.hits.size(); ++below) {
         const auto number = static_cast<std::uint32_t>(intervals_.size());
@@ -84,7 +84,7 @@ void Spaces::join(std::int32_t x, std::int32_t y, std::int32_t other_x, std::int
         const std::uint32_t b = there[m];
         const float low_m = std::max(intervals_[a].low_m, intervals_[b].low_m);
         const float high_m = std::min(intervals_[a].high_m, intervals_[b].high_m);
-        if (high_m - low_m >= least_overlap_m) {
+        if (high_m - low_m >= min_overlap_m) {
             const float z_m = (low_m + high_m) / 2;
             join(a, glm::vec3(line_at(x, y), z_m), b, glm::vec3(line_at(other_x, other_y), z_m));
         }
@@ -101,7 +101,7 @@ void Spaces::join(std::uint32_t a, const glm::vec3& in_a, std::uint32_t b, const
     if (!one || spaces_.root_of(a) == spaces_.root_of(b))
         return;
     const std::uint32_t under = spaces_.root_of(intervals_[a].under_back ? a : b);
-    if ((!both && intervals_[under].open) || surroundings_.separated(in_a, in_b))
+    if ((!both && intervals_[under].open) || queries_.separated(in_a, in_b))
         return;
     if (!both) {
         intervals_[under].open = true;
@@ -125,7 +125,7 @@ void Spaces::open_at(const glm::vec3& place) {
             const std::int32_t y = along(at.y + dy);
             const std::uint32_t interval = line(x, y).intervals[surfaces_below(line(x, y), place.z)];
             if (intervals_[interval].under_back &&
-                !surroundings_.separated(place, glm::vec3(line_at(x, y), place.z)))
+                !queries_.separated(place, glm::vec3(line_at(x, y), place.z)))
                 intervals_[spaces_.root_of(interval)].open = true;
         }
     }
@@ -153,8 +153,7 @@ bool Spaces::is_in_solid(const Line& line, const glm::vec2& at, std::size_t belo
     const std::uint32_t interval = line.intervals[below];
     std::optional<bool>& closed = closed_[interval];
     if (!closed) {
-        closed =
-            intervals_[interval].under_body && surroundings_.closed_around(glm::vec3(at, z_m)).has_value();
+        closed = intervals_[interval].under_body && queries_.closed_around(glm::vec3(at, z_m)).has_value();
     }
     return *closed || (intervals_[interval].under_back && !intervals_[spaces_.root_of(interval)].open);
 }

@@ -20,12 +20,12 @@ class Spaces {
     static constexpr std::int32_t lines_along = 32;
 
     // `corner` is the sector's; what a probe stands in is not sealed. Nothing is asked beyond the sector:
-    // what changes there does not change its grid. REQUIRES: the surroundings outlive it.
+    // what changes there does not change its grid. REQUIRES: the queries outlive it.
     Spaces(const Position& corner,
            float bottom_m,
            float top_m,
            std::span<const glm::vec3> probes,
-           const Surroundings& surroundings);
+           const SceneQueries& queries);
 
     [[nodiscard]] glm::vec2 line_at(std::int32_t x, std::int32_t y) const;
 
@@ -58,7 +58,7 @@ class Spaces {
     }
 
     const Position corner_;
-    const Surroundings& surroundings_;
+    const SceneQueries& queries_;
     std::vector<Line> lines_;  // by row
     std::vector<Interval> intervals_;
     DisjointSets spaces_;                      // of intervals; what is said of a space stands at its first

@@ -58,7 +58,7 @@ class Thinner {
 
 Thinned thin(std::span<const Candidate> own, std::size_t max_count, const Sees& sees) {
     constexpr float step = 1.125f;
-    constexpr float most_growth = 16;  // then what hides from each other is too much for a file
+    constexpr float max_growth = 16;  // then what hides from each other is too much for a file
     Thinned thinned;
     if (max_count == 0)
         return thinned;
@@ -70,7 +70,7 @@ Thinned thin(std::span<const Candidate> own, std::size_t max_count, const Sees& 
     while (kept.size() > max_count) {
         thinned.growth = grown;
         grown *= step;
-        if (by_sight && grown > most_growth) {
+        if (by_sight && grown > max_growth) {
             by_sight = false;
             thinned.growth = grown = 1;
         }

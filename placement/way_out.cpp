@@ -30,12 +30,12 @@ std::span<const glm::vec3> ways_out() {
     return ways;
 }
 
-bool leads_out(const Position& from, const Position& to, Stand stand, const Surroundings& surroundings) {
+bool leads_out(const Position& from, const Position& to, Stand stand, const SceneQueries& queries) {
     const glm::vec3 start = metres(from);
     const glm::vec3 way = glm::normalize(metres(to) - start);
     // From a little before, so that a wall in which it stands is crossed.
     const glm::vec3 before = start - way * wall_clearance_m;
-    return std::ranges::none_of(surroundings.sides(before, metres(to)), [&](const Side& side) {
+    return std::ranges::none_of(queries.sides(before, metres(to)), [&](const Side& side) {
         if (!side.sheet)
             return side.front;
         const bool own_wall = stand == Stand::in_wall && side.distance_m <= 2 * wall_clearance_m;

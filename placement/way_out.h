@@ -16,6 +16,6 @@ namespace drtv::placement {
 [[nodiscard]] bool leads_out(const Position& from,
                              const Position& to,
                              Stand stand,
-                             const Surroundings& surroundings);
+                             const SceneQueries& queries);
 
 }  // namespace drtv::placement

@@ -1,109 +1,84 @@
 #!/usr/bin/env python3
-"""The rooms of the code and the arrows between them: fails when a file includes what its room may not.
+"""The rooms of the code and the arrows between them: fails when a file includes or names what its room may not, when a
+link line does, when two rooms have a type of one name, and when README's table of rooms says otherwise.
 
-The table below is the one in README; DESIGN section 5 gives the reasons. `--self-test` plants forbidden includes
-and checks that each is found.
+The table below is the one in README; docs/design.md, section 5, gives the reasons. `--self-test` plants what is
+forbidden and checks that each is found; `--readme` prints README's last column.
 """
 import os
 import re
+import subprocess
 import sys
 import tempfile
 
-# Room (longest prefix wins) -> rooms whose headers it may include, besides its own.
-ARROWS = {
-    "format": set(),
-    "format/runtime": {"format"},
-    "format/light": {"format", "format/runtime"},
-    "format/kit": {"format", "format/runtime", "format/light"},
-    "format/tool": {"format", "format/runtime", "format/light", "format/kit"},
-    "placement": set(),
-    "bakerd/map": set(),
-    "bakerd/trace": {"bakerd/map", "placement"},
-    "bakerd/bake": {"bakerd/trace", "bakerd/map", "placement", "format"},
-    "bakerd/reuse": {"bakerd/bake", "bakerd/trace", "bakerd/map", "placement", "format"},
-    "bakerd/store": {"bakerd/map"},
-    "bakerd/worker": {
-        "bakerd/store",
-        "bakerd/reuse",
-        "bakerd/bake",
-        "bakerd/trace",
-        "bakerd/map",
-        "format",
-    },
-    "bakerd/farm": {"bakerd/worker", "bakerd/store", "bakerd/reuse", "bakerd/bake", "bakerd/map"},
-    "bakerd/service": {"bakerd/farm", "bakerd/worker", "bakerd/store", "bakerd/reuse", "bakerd/map", "proto"},
-    "bakerd/picture": {
-        "bakerd/bake",
-        "bakerd/trace",
-        "bakerd/map",
-        "format",
-        "format/runtime",
-        "format/light",
-        "format/kit",
-    },
+# Library -> its headers, its names in code, its CMake targets.
+LIBRARIES = {
+    "zstd": (r"zstd\.h", r"ZSTD_\w+", {"zstd::libzstd_shared", "${drtv_zstd}"}),
+    "CLI11": (r"CLI/", r"CLI::", {"CLI11::CLI11"}),
+    "nlohmann_json": (r"nlohmann/", r"nlohmann::", {"nlohmann_json::nlohmann_json"}),
+    "stb": (r"stb/", r"stbiw?_\w+|stb_\w+", set()),
+    "GLM": (r"glm/", r"glm::", {"glm::glm"}),
+    "CGAL": (r"CGAL/", r"CGAL::", {"CGAL::CGAL"}),
+    "tinygltf": (r"tiny_gltf\.h", r"tinygltf::", {"TinyGLTF::TinyGLTF"}),
+    "Embree": (r"embree3/", r"rtc[A-Z]\w+|RTC[A-Z]\w+", {"embree"}),
+    "TBB": (r"tbb/", r"tbb::", {"TBB::tbb"}),
+    "OpenSSL": (r"openssl/", r"EVP_\w+", {"OpenSSL::Crypto"}),
+    "SQLite": (r"(sqlite3\.h|SQLiteCpp/)", r"SQLite::|sqlite3_\w+", {"SQLiteCpp", "SQLite::SQLite3"}),
+    "protobuf": (r"google/protobuf/", r"google::protobuf::", {"protobuf::libprotobuf"}),
+    "gRPC": (r"(grpcpp|grpc)/", r"grpc::", {"gRPC::grpc++", "gRPC::grpc++_reflection"}),
+    "spdlog": (r"spdlog/", r"spdlog::", {"spdlog::spdlog"}),
+    "fmt": (r"fmt/", r"fmt::", {"fmt::fmt"}),
+    "tl-expected": (r"tl/expected", r"tl::", {"tl::expected"}),
+    "threads": (r"(?!)", r"(?!)", {"Threads::Threads"}),
+}
+# Small, and without consequence: README names them in a sentence, not in the table.
+EVERYDAY = {"spdlog", "fmt", "tl-expected", "threads"}
+
+# Room (the longest prefix of a path wins) -> what it may use: rooms besides itself, libraries, and single public
+# headers of rooms to which it has no arrow.
+ROOMS = {
+    "format": "zstd",
+    "format/runtime": "format",
+    "format/light": "format/runtime nlohmann_json tl-expected",
+    "format/cli": "drtv/version.h CLI11 nlohmann_json tl-expected",
+    "format/kit": "format/cli format/light format/runtime format CLI11 stb tl-expected",
+    "format/tool": "format/kit format/cli format/runtime format CLI11 nlohmann_json tl-expected threads",
+    "placement": "drtv/conventions.h GLM CGAL fmt tl-expected",
+    "proto": "gRPC protobuf",
+    "settings": "fmt tl-expected",
+    "settings/message": "settings proto protobuf tl-expected",
+    "bakerd/map": "drtv/conventions.h GLM tinygltf stb nlohmann_json OpenSSL fmt tl-expected",
+    "bakerd/trace": "bakerd/map placement GLM Embree fmt tl-expected",
+    "bakerd/bake": "bakerd/trace bakerd/map placement settings format GLM TBB fmt tl-expected",
+    "bakerd/reuse": "bakerd/bake bakerd/trace bakerd/map placement settings format GLM TBB zstd fmt tl-expected",
+    "bakerd/store": "bakerd/map nlohmann_json fmt tl-expected",
+    "bakerd/worker": "bakerd/reuse bakerd/bake bakerd/trace bakerd/store bakerd/map settings TBB nlohmann_json spdlog fmt tl-expected",
+    "bakerd/farm": "bakerd/worker bakerd/reuse bakerd/bake bakerd/store bakerd/map settings SQLite spdlog fmt tl-expected",
+    "bakerd/service": "bakerd/farm bakerd/reuse bakerd/store bakerd/map settings/message settings proto gRPC protobuf fmt tl-expected",
+    "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map format/kit format/cli format/light format/runtime format GLM TBB CLI11 stb fmt tl-expected",
     # main wires the rooms together and asks trace whether this CPU will do.
-    "bakerd": {
-        "bakerd/farm",
-        "bakerd/picture",
-        "bakerd/service",
-        "format/kit",
-        "bakerd/trace",
-        "bakerd/worker",
-    },
-    "client": {"proto"},
+    "bakerd": "bakerd/service bakerd/farm bakerd/picture bakerd/worker bakerd/trace format/cli CLI11 spdlog",
+    "client": "settings/message settings proto format/cli CLI11 nlohmann_json stb OpenSSL gRPC fmt tl-expected",
 }
+# A game may link these, so nothing in them may rest on a room under another licence.
+MIT_ROOMS = ("format", "proto")
+MIT_FOLDERS = (*MIT_ROOMS, "examples")
 
-# Single public headers -> rooms that may include them without an arrow to their room.
-OPEN_HEADERS = {"drtv/conventions.h": {"placement", "bakerd/map"}}
-
-# Foreign headers -> the only rooms that may include them.
-FOREIGN = {
-    r"tiny_gltf\.h": {"bakerd/map"},
-    r"stb/": {"bakerd/map", "bakerd/picture", "client", "format/kit"},
-    r"embree3/": {"bakerd/trace"},
-    r"CGAL/": {"placement"},
-    r"glm/": {"placement", "bakerd/map", "bakerd/trace", "bakerd/bake", "bakerd/reuse", "bakerd/picture"},
-    r"tbb/": {"bakerd/bake", "bakerd/reuse", "bakerd/worker", "bakerd/picture"},
-    r"zstd\.h": {"format", "bakerd/reuse"},
-    r"(sqlite3\.h|SQLiteCpp/)": {"bakerd/farm"},
-    r"(grpcpp|grpc)/": {"bakerd/service", "client"},
-    r"google/protobuf/": {"bakerd/service"},
-    r"nlohmann/": {"format/light", "format/tool", "bakerd/map", "bakerd/store", "bakerd/worker", "client"},
-    r"openssl/": {"bakerd/map", "client"},
-    r"CLI/": {"bakerd", "bakerd/picture", "client", "format/kit", "format/tool"},
-    r"spdlog/": {"bakerd", "bakerd/worker", "bakerd/farm", "bakerd/service"},
-    r"fmt/": {
-        "bakerd",
-        "placement",
-        "bakerd/map",
-        "bakerd/trace",
-        "bakerd/bake",
-        "bakerd/reuse",
-        "bakerd/store",
-        "bakerd/worker",
-        "bakerd/farm",
-        "bakerd/service",
-        "bakerd/picture",
-        "client",
-    },
-    r"tl/expected": {
-        "placement",
-        "bakerd/map",
-        "bakerd/trace",
-        "bakerd/bake",
-        "bakerd/reuse",
-        "bakerd/store",
-        "bakerd/worker",
-        "bakerd/farm",
-        "bakerd/service",
-        "bakerd/picture",
-        "client",
+# What a room's types stand in, besides drtv itself: naming it is using the room.
+NAMESPACES = {
+    "v1": "proto",
+    **{
+        room.split("/")[-1]: room
+        for room in ROOMS
+        if room not in ("format", "proto", "bakerd", "settings/message")
     },
 }
+del NAMESPACES["runtime"], NAMESPACES["light"]  # theirs is drtv, as format's
 
 FORBIDDEN_NAMES = {"util", "utils", "common", "core", "helper", "helpers", "manager"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]', re.MULTILINE)
-# Public headers of format/ and runtime are included as <drtv/...>; which room one belongs to is looked up.
+TYPE = re.compile(r"^(?:struct|class|enum class|union) (\w+)(?![\w:]| \w)[^;\n]*(?:\{|$)", re.MULTILINE)
+# Public headers of format/ are included as <drtv/...>; which room one belongs to is looked up.
 PUBLIC_ROOTS = {
     "format/include": "format",
     "format/runtime/include": "format/runtime",
@@ -111,20 +86,38 @@ PUBLIC_ROOTS = {
 }
 
 
+def uses(room):
+    return set(ROOMS[room].split())
+
+
 def room_of(path):
     best = ""
-    for room in ARROWS:
+    for room in ROOMS:
         if (path == room or path.startswith(room + "/")) and len(room) > len(best):
             best = room
     return best
 
 
-def source_files(root):
-    for room in sorted({name.split("/")[0] for name in ARROWS}):
-        for folder, _, names in os.walk(os.path.join(root, room)):
+def files_below(root, endings):
+    for top in sorted({name.split("/")[0] for name in ROOMS}):
+        for folder, _, names in os.walk(os.path.join(root, top)):
             for name in sorted(names):
-                if name.endswith((".h", ".cpp")):
+                if name.endswith(endings):
                     yield os.path.relpath(os.path.join(folder, name), root)
+
+
+def read(root, path):
+    with open(os.path.join(root, path), encoding="utf-8") as file:
+        return file.read()
+
+
+def tracked_files(root):
+    listed = subprocess.run(["git", "-C", root, "ls-files"], check=True, capture_output=True, text=True)
+    return [path for path in listed.stdout.splitlines() if os.path.exists(os.path.join(root, path))]
+
+
+def without_comments_and_texts(code):
+    return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', " ", code, flags=re.DOTALL)
 
 
 def target_room(root, path, quote, header):
@@ -141,76 +134,225 @@ def target_room(root, path, quote, header):
         if os.path.exists(os.path.join(root, beside)):
             return room_of(beside)
         # format/ also builds alone: its parts name each other from there.
-        if os.path.exists(os.path.join(root, "format", header)):
+        if path.startswith("format/") and room_of("format/" + header) != "format":
             return room_of("format/" + header)
         return room_of(header) or None
     return None
 
 
-def check(root):
-    errors = []
-    for path in source_files(root):
+def check_includes(root, path, room, text):
+    for quote, header in INCLUDE.findall(text):
+        target = target_room(root, path, quote, header)
+        if target is not None:
+            if target != room and target not in uses(room) and header not in uses(room):
+                yield f"{path}: includes {header}, and there is no arrow from {room} to {target}"
+            continue
+        for library, (headers, _, _) in LIBRARIES.items():
+            if re.match(headers, header) and library not in uses(room):
+                yield f"{path}: includes {header}, and {room} may not use {library}"
+
+
+def check_names(path, room, text):
+    code = without_comments_and_texts(text)
+    # std::map:: is no room of ours, and neither is another's nested name.
+    spaces = "|".join(sorted(NAMESPACES, key=len, reverse=True))
+    for name in sorted(set(re.findall(rf"(?<![\w:])(?:drtv::)?({spaces})::", code))):
+        if NAMESPACES[name] != room and NAMESPACES[name] not in uses(room):
+            yield f"{path}: names {name}::, and there is no arrow from {room} to {NAMESPACES[name]}"
+    for library, (_, names, _) in LIBRARIES.items():
+        found = re.search(rf"(?<![\w:])(?:{names})", code)
+        if found and library not in uses(room):
+            yield f"{path}: names {found.group(0)}, and {room} may not use {library}"
+
+
+def check_unused(root):
+    """An arrow that no file needs is none."""
+    needed = {room: {"threads"} for room in ROOMS}
+    for path in files_below(root, (".h", ".cpp", ".proto")):
+        room, text = room_of(path), read(root, path)
+        for quote, header in INCLUDE.findall(text):
+            needed[room] |= {target_room(root, path, quote, header), header}
+            needed[room] |= {name for name, (headers, _, _) in LIBRARIES.items() if re.match(headers, header)}
+        code = without_comments_and_texts(text)
+        for name, (_, names, _) in LIBRARIES.items():
+            if re.search(rf"(?<![\w:])(?:{names})", code):
+                needed[room].add(name)
+        needed[room] |= {
+            where
+            for space, where in NAMESPACES.items()
+            if re.search(rf"(?<![\w:])(?:drtv::)?{space}::", code)
+        }
+        if path.endswith(".proto"):
+            needed[room] |= {"gRPC", "protobuf"}
+    for room in ROOMS:
+        for used in sorted(uses(room) - needed[room]):
+            yield f"tests/arrows.py: {room} may use {used}, and no file of it does"
+
+
+def rooms_of_targets(root):
+    rooms = {}
+    for path in files_below(root, ("CMakeLists.txt",)):
+        for kind, name in re.findall(r"^\s*add_(library|executable)\((\w+)", read(root, path), re.MULTILINE):
+            rooms[name] = room_of(os.path.dirname(path) + "/")
+    for name in rooms:
+        if name in ("drtv_runtime", "drtv_c"):
+            rooms[name] = "format/runtime"
+        if name == "settings_message":
+            rooms[name] = "settings/message"
+    return rooms
+
+
+def check_links(root):
+    rooms = rooms_of_targets(root)
+    targets = {target: library for library, (_, _, names) in LIBRARIES.items() for target in names}
+    for path in files_below(root, ("CMakeLists.txt",)):
+        for line in re.findall(r"target_link_libraries\(([^)]*)\)", read(root, path)):
+            target, *linked = line.split()
+            room = rooms.get(target, room_of(path))
+            for word in linked:
+                name = re.sub(r"^\$<BUILD_INTERFACE:(.*)>$", r"\1", word).replace("drtv::", "drtv_")
+                if name in ("PUBLIC", "PRIVATE", "INTERFACE", "drtv_flags"):
+                    continue
+                used = rooms.get(name) or targets.get(name)
+                if name == "drtv_conventions":
+                    used = room if {"drtv/conventions.h", "drtv/version.h"} & uses(room) else "format"
+                if used is None:
+                    yield f"{path}: {target} links {name}, of which this test knows nothing"
+                elif used != room and used not in uses(room):
+                    yield f"{path}: {target} links {name}, and there is no arrow from {room} to {used}"
+
+
+def check_types(root):
+    """A name means one thing: no two headers of the project have a type of one name."""
+    where = {}
+    for path in files_below(root, (".h",)):
+        for name in sorted(set(TYPE.findall(without_comments_and_texts(read(root, path))))):
+            if name in where:
+                yield f"{path}: the type {name} stands in {where[name]} as well"
+            where.setdefault(name, path)
+
+
+def check_licences(root):
+    """The LICENSE nearest above a file is the file's: it says what README says, and no file says otherwise."""
+    said = {
+        "MIT": r"MIT License|SPDX-License-Identifier: MIT",
+        "GPL": r"GNU GENERAL PUBLIC LICENSE|SPDX-License-Identifier: GPL",
+    }
+    for folder in ("", *MIT_FOLDERS):
+        licence = "MIT" if folder else "GPL"
+        path = os.path.join(folder, "LICENSE")
+        if not re.search(said[licence], read(root, path)):
+            yield f"{path} is not the {licence}'s"
+    for path in tracked_files(root):
+        licence = "MIT" if path.split("/")[0] in MIT_FOLDERS else "GPL"
+        other = "GPL" if licence == "MIT" else "MIT"
+        if (
+            path.endswith((".h", ".cpp", ".c", ".py", ".proto", ".shader", ".sh"))
+            and path != "tests/arrows.py"
+        ):
+            if re.search(said[other], read(root, path)):
+                yield f"{path} says that it is under the {other}, its folder is under the {licence}"
+    names = "`, `".join(f"{folder}/" for folder in MIT_FOLDERS)
+    readme = set(re.findall(r"`([\w/]+)/`", read(root, "README.md").split("## Licences")[1].split("MIT")[0]))
+    if readme != set(MIT_FOLDERS):
+        yield f"README.md: `{names}` are under the MIT licence, it says {sorted(readme)}"
+    for room in ROOMS:
+        if room.split("/")[0] not in MIT_ROOMS:
+            continue
+        for used in uses(room) & set(ROOMS):
+            if used.split("/")[0] not in MIT_ROOMS:
+                yield f"{room} is under the MIT licence and may not use {used}, which is not"
+
+
+def in_readme(room):
+    """README's last column: arrows, then libraries."""
+    used = [name for name in ROOMS[room].split() if name not in EVERYDAY]
+    return ", ".join(name if name in LIBRARIES else f"`{name}`" for name in used) or "-"
+
+
+def check_readme(root):
+    rows = dict(re.findall(r"^\| `([\w/]+)/` \|.*\| ([^|]+) \|$", read(root, "README.md"), re.MULTILINE))
+    for room in ROOMS:
+        if room != "bakerd" and rows.get(room) != in_readme(room):
+            yield f"README.md: the row of `{room}/` must end with: {in_readme(room)}, not {rows.get(room)}"
+    yield from (f"README.md: there is no room `{room}/`" for room in rows if room not in ROOMS)
+
+
+def check_code(root):
+    for path in files_below(root, (".h", ".cpp")):
         room = room_of(path)
         parts = re.split(r"[/_.]", path)
-        errors += [f"{path}: no room or file is called '{part}'" for part in parts if part in FORBIDDEN_NAMES]
-        with open(os.path.join(root, path), encoding="utf-8") as file:
-            text = file.read()
-        for quote, header in INCLUDE.findall(text):
-            target = target_room(root, path, quote, header)
-            if target is not None:
-                is_open = room in OPEN_HEADERS.get(header, set())
-                if target != room and target not in ARROWS[room] and not is_open:
-                    errors.append(f"{path}: includes {header}, and there is no arrow from {room} to {target}")
-                continue
-            for pattern, rooms in FOREIGN.items():
-                if re.match(pattern, header) and room not in rooms:
-                    errors.append(
-                        f"{path}: includes {header}, which only {', '.join(sorted(rooms)) or 'nobody'} may"
-                    )
-    return errors
+        yield from (
+            f"{path}: no room or file is called '{part}'" for part in parts if part in FORBIDDEN_NAMES
+        )
+        text = read(root, path)
+        yield from check_includes(root, path, room, text)
+        yield from check_names(path, room, text)
+    yield from check_links(root)
+    yield from check_types(root)
 
 
 PLANTED = [
     ("format/src/planted.cpp", '#include "bakerd/map/map.h"\n', "no arrow from format to bakerd/map"),
-    ("format/src/planted.cpp", "#include <glm/vec3.hpp>\n", "glm/vec3.hpp, which only"),
-    ("placement/planted.cpp", "#include <embree3/rtcore.h>\n", "embree3/rtcore.h, which only bakerd/trace"),
-    (
-        "bakerd/trace/planted.cpp",
-        "#  include <CGAL/Surface_mesh.h>\n",
-        "CGAL/Surface_mesh.h, which only placement",
-    ),
+    ("format/src/planted.cpp", "#include <glm/vec3.hpp>\n", "glm/vec3.hpp, and format may not use GLM"),
+    ("placement/planted.cpp", "#include <embree3/rtcore.h>\n", "placement may not use Embree"),
+    ("bakerd/trace/planted.cpp", "#  include <CGAL/Surface_mesh.h>\n", "bakerd/trace may not use CGAL"),
     ("bakerd/map/planted.h", '#include "bakerd/trace/scene.h"\n', "no arrow from bakerd/map to bakerd/trace"),
-    ("bakerd/farm/planted.cpp", "#include <grpcpp/grpcpp.h>\n", "grpcpp/grpcpp.h, which only"),
+    ("bakerd/farm/planted.cpp", "#include <grpcpp/grpcpp.h>\n", "bakerd/farm may not use gRPC"),
     ("bakerd/farm/planted.cpp", '#include "drtv/v1/job.pb.h"\n', "no arrow from bakerd/farm to proto"),
     ("client/planted.cpp", '#include "bakerd/farm/farm.h"\n', "no arrow from client to bakerd/farm"),
     ("client/planted.cpp", "#include <drtv/sector.h>\n", "no arrow from client to format"),
     ("client/planted.cpp", "#include <drtv/conventions.h>\n", "no arrow from client to format"),
+    ("client/planted.cpp", '#include "format/kit/png.h"\n', "no arrow from client to format/kit"),
     ("placement/planted.cpp", "#include <drtv/sector.h>\n", "no arrow from placement to format"),
+    ("format/cli/planted.cpp", '#include "kit/png.h"\n', "no arrow from format/cli to format/kit"),
     ("bakerd/bake/string_util.h", "", "called 'util'"),
-]
+    # Names that come through another header.
+    ("bakerd/farm/planted.cpp", "trace::Device device;\n", "names trace::, and there is no arrow from bakerd/farm"),
+    ("bakerd/service/planted.h", "void f(const drtv::bake::World&);\n", "names bake::"),
+    ("bakerd/farm/planted.cpp", "grpc::Status status;\n", "names grpc::, and bakerd/farm may not use gRPC"),
+    ("bakerd/bake/planted.cpp", "auto scene = rtcNewScene(device);\n", "names rtcNewScene"),
+    ("client/planted.cpp", "v1::Job job; cli::warn(\"farm::Farm\");  // farm::Farm\nfarm::Farm x;\n", "names farm::"),
+    ("bakerd/farm/CMakeLists.txt", "target_link_libraries(x PUBLIC drtv_flags\n  PRIVATE embree)\n", "links embree"),
+    ("client/CMakeLists.txt", "target_link_libraries(bake PRIVATE mystery)\n", "links mystery, of which"),
+    ("placement/CMakeLists.txt", "add_library(p)\ntarget_link_libraries(p PRIVATE fmt::fmt TBB::tbb)\n", "links TBB::tbb"),
+]  # fmt: skip
+PLANTED_TYPES = {"bakerd/map/a.h": "struct Region {\n};\n", "client/b.h": "class Region\n    : Base {};\n"}
+
+
+def found_in(files):
+    with tempfile.TemporaryDirectory() as root:
+        for path, text in files.items():
+            os.makedirs(os.path.join(root, os.path.dirname(path)), exist_ok=True)
+            with open(os.path.join(root, path), "w", encoding="utf-8") as file:
+                file.write(text)
+        return list(check_code(root))
 
 
 def self_test():
     failures = 0
-    for path, text, expected in PLANTED:
-        with tempfile.TemporaryDirectory() as root:
-            os.makedirs(os.path.join(root, os.path.dirname(path)))
-            with open(os.path.join(root, path), "w", encoding="utf-8") as file:
-                file.write(text)
-            found = check(root)
-            if len(found) != 1 or expected not in found[0]:
-                print(
-                    f"planted {text.strip() or path} in {path}: found {found}, expected one with '{expected}'"
-                )
-                failures += 1
-    print(f"{len(PLANTED) - failures} passed, {failures} failed")
+    cases = [({path: text}, expected) for path, text, expected in PLANTED]
+    cases.append((PLANTED_TYPES, "the type Region stands in bakerd/map/a.h as well"))
+    for files, expected in cases:
+        found = found_in(files)
+        if len(found) != 1 or expected not in found[0]:
+            print(f"planted {files}: found {found}, expected one with '{expected}'")
+            failures += 1
+    harmless = "std::map<int, int>::iterator a;\nstore::Result<int> b;\nstruct Region;\n"
+    failures += len(found_in({"bakerd/farm/a.h": harmless, "bakerd/map/b.h": "struct Region;\n"}))
+    print(f"{len(cases) + 1 - failures} passed, {failures} failed")
     return failures == 0
 
 
 def main():
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     if "--self-test" in sys.argv:
         sys.exit(0 if self_test() else 1)
-    errors = check(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    if "--readme" in sys.argv:
+        for room in ROOMS:
+            print(f"{room}: {in_readme(room)}")
+        return
+    errors = [*check_code(root), *check_unused(root), *check_licences(root), *check_readme(root)]
     for error in errors:
         print(error)
     sys.exit(1 if errors else 0)

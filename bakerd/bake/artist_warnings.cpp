@@ -41,20 +41,20 @@ glm::vec3 direction_of(std::uint32_t n, std::uint32_t count) {
 }
 
 // The object that keeps all light of the lamp in; nothing where some ray comes farther than that.
-std::optional<std::uint32_t> shell_of(const PointLight& lamp, float most_m, const trace::Scene& scene) {
+std::optional<std::uint32_t> shell_of(const StaticPointLight& lamp, float max_m, const trace::Scene& scene) {
     constexpr std::uint32_t rays = 256;
     std::optional<std::uint32_t> shell;
     for (std::uint32_t n = 0; n < rays; ++n) {
         const glm::vec3 direction = direction_of(n, rays);
-        const glm::vec3 end = lamp.position + direction * most_m;
+        const glm::vec3 end = lamp.position + direction * max_m;
         if (lamp.irradiance_at(end) == glm::vec3(0))
             continue;  // beside the cone
         // Towards the lamp: a surface that it lies on does not keep its light in.
-        if (!scene.hides_surface({end, -direction, most_m}))
+        if (!scene.hides_surface({end, -direction, max_m}))
             return std::nullopt;
         if (shell)
             continue;
-        if (const auto hit = scene.closest({lamp.position, direction, most_m}))
+        if (const auto hit = scene.closest({lamp.position, direction, max_m}))
             shell = scene.object_index(hit->instance);
     }
     return shell;

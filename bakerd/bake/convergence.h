@@ -18,7 +18,7 @@ inline constexpr double block_correction = 0.75;
 
 // An error counts against the mean, or against this where the mean is smaller: E/pi under a sky of radiance
 // 1, or W/m2.
-inline constexpr double least_mean = 0.02;
+inline constexpr double min_mean = 0.02;
 
 // Of so many numbers that are estimated together, for instance channels and directions.
 template <std::size_t count>
@@ -42,7 +42,7 @@ struct ErrorOfMean {
     double mean = 0;   // over the numbers
 
     // Over the mean or `least_mean`.
-    [[nodiscard]] double over_mean() const { return error / (mean > least_mean ? mean : least_mean); }
+    [[nodiscard]] double over_mean() const { return error / (mean > min_mean ? mean : min_mean); }
     // Over the mean; 0 where that is none.
     [[nodiscard]] double on_own_scale() const { return mean > 0 ? error / mean : 0; }
 };

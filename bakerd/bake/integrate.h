@@ -1,4 +1,5 @@
-// What one probe gets from sky and static lights (DESIGN section 2; s19-s21), by paths from the probe.
+// What one probe gets from sky and static lights (docs/design.md, section 2; slides 19 to 21), by paths from
+// the probe.
 #pragma once
 
 #include "bakerd/bake/lights.h"

@@ -18,7 +18,7 @@ namespace {
 
 using placement::Position;
 
-constexpr std::int64_t most_steps = UINT16_MAX;
+constexpr std::int64_t max_steps = UINT16_MAX;
 
 std::int64_t units(double metres) {
     return std::llround(metres * position_units_per_m);
@@ -28,14 +28,14 @@ map::SectorCoordinate sector_of(const Position& position) {
     return {placement::sector_of(position.x), placement::sector_of(position.y)};
 }
 
-const map::ManualProbe* probe_of(const map::Map& map,
-                                 const map::Volume& volume,
-                                 const placement::ClosedVolume& closed,
-                                 const glm::dvec3& middle) {
+const map::ProbeNode* probe_of(const map::Map& map,
+                               const map::VolumeNode& volume,
+                               const placement::ClosedVolume& closed,
+                               const glm::dvec3& middle) {
     if (!volume.probe_name.empty())
-        return &*std::ranges::find(map.probes, volume.probe_name, &map::ManualProbe::name);
-    const map::ManualProbe* nearest = nullptr;
-    for (const map::ManualProbe& probe : map.probes) {
+        return &*std::ranges::find(map.probes, volume.probe_name, &map::ProbeNode::name);
+    const map::ProbeNode* nearest = nullptr;
+    for (const map::ProbeNode& probe : map.probes) {
         if (nearest != nullptr &&
             glm::distance(probe.position, middle) >= glm::distance(nearest->position, middle))
             continue;
@@ -61,10 +61,10 @@ tl::expected<Interior, std::string> store_mesh(const std::string& name,
     }
     Interior interior;
     const auto length = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-    while (interior.shift < max_interior_shift && (length >> interior.shift) >= most_steps)
+    while (interior.shift < max_interior_shift && (length >> interior.shift) >= max_steps)
         ++interior.shift;
     const auto too_far = [](std::int64_t u) { return std::abs(u) > max_interior_origin_units; };
-    if ((length >> interior.shift) >= most_steps || std::ranges::any_of(low, too_far)) {
+    if ((length >> interior.shift) >= max_steps || std::ranges::any_of(low, too_far)) {
         return tl::unexpected(
             fmt::format("the interior '{}' is {} m long or lies too far from the origin: the limit is 65 km",
                         name,
@@ -103,7 +103,7 @@ tl::expected<Interior, std::string> store_mesh(const std::string& name,
 }  // namespace
 
 tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
-                                                        const map::Volume& volume,
+                                                        const map::VolumeNode& volume,
                                                         const placement::ClosedVolume& closed) {
     auto stored = store_mesh(volume.name, closed);
     if (!stored)
@@ -116,7 +116,7 @@ tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
     }
     const glm::dvec3 middle = (low + high) / 2.0;
     InteriorVolume interior{volume.name, std::nullopt, {}, closed, std::move(*stored)};
-    if (const map::ManualProbe* probe = probe_of(map, volume, closed, middle)) {
+    if (const map::ProbeNode* probe = probe_of(map, volume, closed, middle)) {
         interior.probe = placement::to_position(probe->position);
         interior.sector = sector_of(*interior.probe);
     }

@@ -1,5 +1,5 @@
-// Interior volumes (s56): closed meshes whose inside uses one probe. An interior stands in the file of the
-// sector that holds its probe, whole, wherever the mesh reaches.
+// Interior volumes (slide 56): closed meshes whose inside uses one probe. An interior stands in the file of
+// the sector that holds its probe, whole, wherever the mesh reaches.
 #pragma once
 
 #include "bakerd/map/ground.h"
@@ -31,7 +31,7 @@ struct InteriorVolume {
 // that become lines are left out. Fails with a sentence when it has over 65536 vertices or is over 65 km
 // long. REQUIRES: `closed` was made of `volume`, which the map holds.
 [[nodiscard]] tl::expected<InteriorVolume, std::string> make_interior(const map::Map& map,
-                                                                      const map::Volume& volume,
+                                                                      const map::VolumeNode& volume,
                                                                       const placement::ClosedVolume& closed);
 
 // Of the probes as they are stored, the one that stood at that place. Manual ones are never given up, but

@@ -18,7 +18,7 @@ glm::length_t longest_axis(const glm::vec3& extent) {
 
 LightTree::LightTree(const LightSet& lights, const glm::vec3& centre, float reach_m) {
     std::vector<Node> leaves;
-    for (const PointLight* point : lights.points) {
+    for (const StaticPointLight* point : lights.points) {
         if (glm::length(point->position - centre) > reach_m)
             continue;
         points_.push_back(point);
@@ -78,9 +78,8 @@ float LightTree::share_of_left(const Node& node, const glm::vec3& from) const {
     const Node& right = nodes_[static_cast<std::size_t>(node.right)];
     const auto square = [&](const Node& child) {
         const glm::vec3 d = child.centre - from;
-        return std::max({glm::dot(d, d),
-                         child.radius_m * child.radius_m,
-                         least_light_distance_m * least_light_distance_m});
+        return std::max(
+            {glm::dot(d, d), child.radius_m * child.radius_m, min_light_distance_m * min_light_distance_m});
     };
     const float of_left = left.power * square(right);
     const float of_right = right.power * square(left);
@@ -97,7 +96,7 @@ LightTree::Drawn LightTree::draw(const glm::vec3& from, double u, const Roulette
         const glm::vec3 way = node->centre - from;
         const float squared = glm::dot(way, way);
         if (squared > node->radius_m * node->radius_m) {
-            const float distance_m = std::max(std::sqrt(squared) - node->radius_m, least_light_distance_m);
+            const float distance_m = std::max(std::sqrt(squared) - node->radius_m, min_light_distance_m);
             const float scaled = roulette.faint * distance_m * distance_m * drawn.probability;
             if (node->power < drawn.survival * scaled)
                 drawn.survival = node->power / scaled;

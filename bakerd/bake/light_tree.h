@@ -28,7 +28,7 @@ class LightTree {
 
     // One light: points first, then emissive objects.
     struct Item {
-        const PointLight* point = nullptr;
+        const StaticPointLight* point = nullptr;
         const EmissiveObject* emissive = nullptr;
     };
     struct Drawn {
@@ -40,7 +40,7 @@ class LightTree {
 
     [[nodiscard]] bool empty() const { return nodes_.empty(); }
     [[nodiscard]] bool has_emissive() const { return !leaf_of_object_.empty(); }
-    [[nodiscard]] std::span<const PointLight* const> points() const { return points_; }
+    [[nodiscard]] std::span<const StaticPointLight* const> points() const { return points_; }
     // REQUIRES: not empty.
     [[nodiscard]] Drawn draw(const glm::vec3& from, double u, const Roulette& roulette) const;
     // The emissive object of that number with the probability with which `draw` gives it; 0 when it is not in
@@ -61,7 +61,7 @@ class LightTree {
     [[nodiscard]] float share_of_left(const Node& node, const glm::vec3& from) const;
 
     std::vector<Node> nodes_;
-    std::vector<const PointLight*> points_;
+    std::vector<const StaticPointLight*> points_;
     std::vector<std::pair<std::uint32_t, std::int32_t>> leaf_of_object_;  // sorted by object
 };
 

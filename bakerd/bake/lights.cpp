@@ -122,8 +122,8 @@ std::vector<std::size_t> emissive_triangles_of_meshes(const map::Map& map) {
 
 }  // namespace
 
-PointLight point_light(const map::Light& light) {
-    PointLight point;
+StaticPointLight point_light(const map::Light& light) {
+    StaticPointLight point;
     point.position = light.position;
     point.intensity = radiometric(light.colour * light.intensity);
     point.range_m = light.range_m;
@@ -137,10 +137,9 @@ PointLight point_light(const map::Light& light) {
     return point;
 }
 
-glm::vec3 PointLight::irradiance_at(const glm::vec3& point) const {
+glm::vec3 StaticPointLight::irradiance_at(const glm::vec3& point) const {
     const glm::vec3 to_light = position - point;
-    const float square =
-        std::max(glm::dot(to_light, to_light), least_light_distance_m * least_light_distance_m);
+    const float square = std::max(glm::dot(to_light, to_light), min_light_distance_m * min_light_distance_m);
     float attenuation = 1 / square;
     if (range_m > 0) {
         const float ratio = square / (range_m * range_m);

@@ -23,10 +23,10 @@ inline constexpr float lumens_per_watt = 683;
 using map::brightest;
 
 // Nearer to a point light than this, its inverse square stays as it is: it stands in no surface.
-inline constexpr float least_light_distance_m = 0.01f;
+inline constexpr float min_light_distance_m = 0.01f;
 
 // A point or spot light.
-struct PointLight {
+struct StaticPointLight {
     glm::vec3 position{};
     glm::vec3 intensity{};                  // W/sr
     float range_m = 0;                      // 0: unlimited
@@ -38,9 +38,9 @@ struct PointLight {
 };
 
 // REQUIRES: it is no directional light.
-[[nodiscard]] PointLight point_light(const map::Light& light);
+[[nodiscard]] StaticPointLight point_light(const map::Light& light);
 
-struct Sun {
+struct StaticSun {
     glm::vec3 towards{};     // unit
     glm::vec3 irradiance{};  // W/m2 of a surface that faces it
 };
@@ -78,8 +78,8 @@ struct EmissiveObject {
 // Lights whose static irradiance is kept apart: a light group, or all that are in none.
 struct LightSet {
     std::string name;  // empty: of no group
-    std::vector<const PointLight*> points;
-    std::vector<const Sun*> suns;
+    std::vector<const StaticPointLight*> points;
+    std::vector<const StaticSun*> suns;
     std::vector<const EmissiveObject*> emissive;  // in the map's order of objects
 };
 
@@ -90,8 +90,8 @@ class StaticLights {
     StaticLights& operator=(const StaticLights&) = delete;
 
     [[nodiscard]] bool empty() const { return points_.empty() && suns_.empty() && emissive_.empty(); }
-    [[nodiscard]] std::span<const PointLight> points() const { return points_; }
-    [[nodiscard]] std::span<const Sun> suns() const { return suns_; }
+    [[nodiscard]] std::span<const StaticPointLight> points() const { return points_; }
+    [[nodiscard]] std::span<const StaticSun> suns() const { return suns_; }
     [[nodiscard]] std::span<const EmissiveObject> emissive() const { return emissive_; }
     [[nodiscard]] const map::Map& map() const { return *map_; }
 
@@ -111,8 +111,8 @@ class StaticLights {
     }
 
     std::shared_ptr<const map::Map> map_;
-    std::vector<PointLight> points_;
-    std::vector<Sun> suns_;
+    std::vector<StaticPointLight> points_;
+    std::vector<StaticSun> suns_;
     std::vector<EmissiveObject> emissive_;  // in the map's order of objects
     std::vector<LightSet> sets_;
     std::vector<std::size_t> set_of_group_;  // by number of the group in the map

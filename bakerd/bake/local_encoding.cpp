@@ -10,10 +10,11 @@
 namespace drtv::bake {
 namespace {
 
-constexpr int least_exponent = -60;  // of a source or of a receiver; no light is that faint
+constexpr int min_exponent = -60;  // of a source or of a receiver; no light is that faint
 
 // Of a pair's largest code. A pair is known to 1 % at best, and this rounds it to 0.2 % of its largest: what
-// it drops is noise, which would be most of a compressed file (CHANGELOG has the figures).
+// it drops is noise, which would be most of a compressed file. Measured by build/ci/tests/format_bench
+// (docs/measurements.md, "Filters before zstd").
 constexpr int significant_bits = 8;
 
 std::int64_t square_distance(const placement::Position& a, const placement::Position& b) {
@@ -166,7 +167,7 @@ LocalTransfer encode_local(const LocalSources& sources, const LocalLight& light)
             brightest[of_receiver[n]] = std::max(brightest[of_receiver[n]], largest(light.pairs[p][n]));
     }
     for (std::size_t s = 0; s < brightest.size(); ++s)
-        transfer.sources[s].exponent = static_cast<std::int8_t>(exponent_of(brightest[s], least_exponent));
+        transfer.sources[s].exponent = static_cast<std::int8_t>(exponent_of(brightest[s], min_exponent));
     for (std::size_t p = 0; p < receiver_count; ++p) {
         const std::vector<std::uint32_t>& of_receiver = sources.of_receivers[p];
         LocalReceiver receiver;
@@ -177,7 +178,7 @@ LocalTransfer encode_local(const LocalSources& sources, const LocalLight& light)
             const float scale = scale_of_exponent(transfer.sources[of_receiver[n]].exponent);
             most = std::max(most, largest(light.pairs[p][n]) / scale);
         }
-        receiver.exponent = static_cast<std::int8_t>(exponent_of(most, least_exponent));
+        receiver.exponent = static_cast<std::int8_t>(exponent_of(most, min_exponent));
         for (std::size_t n = 0; n < of_receiver.size(); ++n) {
             const std::uint32_t s = of_receiver[n];
             const float scale = scale_of_exponent(receiver.exponent + transfer.sources[s].exponent);

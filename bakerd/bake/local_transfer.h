@@ -1,5 +1,5 @@
-// Local radiance transfer (DESIGN section 2; s22-s23, s30-s31; Kristensen et al. 2005): what the bounce of a
-// white point light at each source brings to each probe.
+// Local radiance transfer (docs/design.md, section 2; slides 22 to 23 and slides 30 to 31; Kristensen et al.
+// 2005): what the bounce of a white point light at each source brings to each probe.
 #pragma once
 
 #include "bakerd/bake/ray_watch.h"

@@ -10,7 +10,7 @@
 
 namespace drtv::bake {
 
-Incident NextEvent::towards(const PointLight& light, const glm::vec3& from) const {
+Incident NextEvent::towards(const StaticPointLight& light, const glm::vec3& from) const {
     const glm::vec3 to_light = light.position - from;
     const float distance_m = glm::length(to_light);
     if (!(distance_m > 0))
@@ -18,7 +18,7 @@ Incident NextEvent::towards(const PointLight& light, const glm::vec3& from) cons
     return {to_light / distance_m, light.irradiance_at(from), light.position, distance_m, 0};
 }
 
-Incident NextEvent::towards(const Sun& sun, const glm::vec3& from) const {
+Incident NextEvent::towards(const StaticSun& sun, const glm::vec3& from) const {
     return {sun.towards, sun.irradiance, std::nullopt, exit_distance(from, sun.towards, probe_, reach_m_), 0};
 }
 

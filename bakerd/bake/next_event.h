@@ -33,11 +33,11 @@ class NextEvent {
     [[nodiscard]] bool idle() const { return tree_.empty() && lights_.suns.empty(); }
     [[nodiscard]] bool has_drawn_lights() const { return !tree_.empty(); }
     [[nodiscard]] bool has_emissive() const { return tree_.has_emissive(); }
-    [[nodiscard]] std::span<const PointLight* const> points() const { return tree_.points(); }
-    [[nodiscard]] std::span<const Sun* const> suns() const { return lights_.suns; }
+    [[nodiscard]] std::span<const StaticPointLight* const> points() const { return tree_.points(); }
+    [[nodiscard]] std::span<const StaticSun* const> suns() const { return lights_.suns; }
 
-    [[nodiscard]] Incident towards(const PointLight& light, const glm::vec3& from) const;
-    [[nodiscard]] Incident towards(const Sun& sun, const glm::vec3& from) const;
+    [[nodiscard]] Incident towards(const StaticPointLight& light, const glm::vec3& from) const;
+    [[nodiscard]] Incident towards(const StaticSun& sun, const glm::vec3& from) const;
     // One light of the tree by the three numbers; nothing where the draw sends no light.
     [[nodiscard]] std::optional<Incident> draw(const glm::vec3& from,
                                                const std::array<double, 3>& u,

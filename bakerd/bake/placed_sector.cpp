@@ -57,15 +57,15 @@ tl::expected<void, std::string> store_positions(const std::vector<placement::Pla
     return {};
 }
 
-float most_distance_m(const PlacementTags& tags, const Settings& settings) {
-    float most_m = settings.min_distance_m;
+float max_distance_m(const PlacementTags& tags, const settings::BakeSettings& settings) {
+    float max_m = settings.min_distance_m;
     for (const placement::SpacingVolume& spacing : tags.spacings)
-        most_m = std::max(most_m, spacing.min_distance_m);
-    return most_m;
+        max_m = std::max(max_m, spacing.min_distance_m);
+    return max_m;
 }
 
 // How far around a sector placement looks down its columns.
-float placement_margin_m(const PlacementTags& tags, const Settings& settings) {
+float placement_margin_m(const PlacementTags& tags, const settings::BakeSettings& settings) {
     const float margin_m = placement::decision_margin_m({settings.min_distance_m}, tags.spacings);
     // The neighbours' probes are sources of local transfer.
     return settings.local_transfer ? margin_m + static_cast<float>(map::sector_size_m) : margin_m;
@@ -73,21 +73,21 @@ float placement_margin_m(const PlacementTags& tags, const Settings& settings) {
 
 }  // namespace
 
-float placement_reach_m(const PlacementTags& tags, const Settings& settings) {
+float placement_reach_m(const PlacementTags& tags, const settings::BakeSettings& settings) {
     // As far as candidates stand, may be moved, and look for others at their distance.
-    return placement_margin_m(tags, settings) + 2 * most_distance_m(tags, settings);
+    return placement_margin_m(tags, settings) + 2 * max_distance_m(tags, settings);
 }
 
 // Placement looks over the border, and from there, moved by some steps, as far as the reach goes.
-float scene_distance_m(const PlacementTags& tags, const Settings& settings) {
+float scene_distance_m(const PlacementTags& tags, const settings::BakeSettings& settings) {
     return settings.reach_m + placement_reach_m(tags, settings);
 }
 
 tl::expected<PlacedSector, std::string> place_sector(const PlacementTags& tags,
                                                      const trace::Scene& scene,
                                                      map::SectorCoordinate coordinate,
-                                                     const Settings& settings) {
-    const placement::Settings how{settings.min_distance_m};
+                                                     const settings::BakeSettings& settings) {
+    const placement::PlacementSettings how{settings.min_distance_m};
     const glm::vec2 corner = glm::vec2(coordinate.i, coordinate.j) * static_cast<float>(map::sector_size_m);
     const float margin_m = placement::decision_margin_m(how, tags.spacings);
     std::vector<placement::Box> vegetation;
@@ -96,7 +96,7 @@ tl::expected<PlacedSector, std::string> place_sector(const PlacementTags& tags,
         vegetation.push_back({bounds.low, bounds.high});
     auto placement = placement::place_probes(
         {coordinate.i, coordinate.j, vegetation, tags.manual_probes, tags.no_probes, tags.spacings},
-        surroundings_of(scene, settings.reach_m),
+        queries_of(scene, settings.reach_m),
         how);
     if (!placement)
         return tl::unexpected(placement.error());

@@ -7,6 +7,6 @@
 namespace drtv::bake {
 
 // Things are numbered as the map's objects. REQUIRES: the functions are used while the scene lives.
-[[nodiscard]] placement::Surroundings surroundings_of(const trace::Scene& scene, float reach_m);
+[[nodiscard]] placement::SceneQueries queries_of(const trace::Scene& scene, float reach_m);
 
 }  // namespace drtv::bake

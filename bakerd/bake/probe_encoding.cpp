@@ -49,7 +49,7 @@ std::map<std::string, float> groups_that_shine(std::span<const BakedProbe> probe
             of_group = std::max(of_group, brightest_side(group.irradiance));
         }
     }
-    std::erase_if(most, [](const auto& group) { return group.second < least_group_light; });
+    std::erase_if(most, [](const auto& group) { return group.second < min_group_light; });
     return most;
 }
 
@@ -138,7 +138,7 @@ bool is_dark(const Sector& sector, std::size_t probe) {
                                 [probe](const LightGroup& group) { return is_lit(group.irradiance[probe]); });
 }
 
-Convergence convergence_of(std::span<const BakedProbe> probes, const Settings& settings) {
+Convergence convergence_of(std::span<const BakedProbe> probes, const settings::BakeSettings& settings) {
     Convergence convergence;
     convergence.error_asked = settings.error;
     std::vector<float> errors;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bakerd/bake/integrate.h"
-#include "bakerd/bake/settings.h"
+#include "settings/bake_settings.h"
 
 #include <drtv/sector.h>
 
@@ -26,7 +26,7 @@ struct ProbeCounts {
 inline constexpr int min_static_exponent = -64;
 
 // A sector's file holds a light group that brings any of its probes so much E/pi, W/m2: a tenth of full moon.
-inline constexpr float least_group_light = 1e-5f;
+inline constexpr float min_group_light = 1e-5f;
 
 // What a light group brings to a probe.
 struct BakedGroup {
@@ -56,6 +56,7 @@ struct BakedProbe {
 [[nodiscard]] bool is_dark(const Sector& sector, std::size_t probe);
 
 // REQUIRES: `sector` is of these probes.
-[[nodiscard]] Convergence convergence_of(std::span<const BakedProbe> probes, const Settings& settings);
+[[nodiscard]] Convergence convergence_of(std::span<const BakedProbe> probes,
+                                         const settings::BakeSettings& settings);
 
 }  // namespace drtv::bake

@@ -17,7 +17,7 @@ namespace drtv::bake {
 namespace {
 
 // "the probe 'name' at (1.00, 2.00, 3.00)"
-std::string shown_probe(const map::ManualProbe& probe) {
+std::string shown_probe(const map::ProbeNode& probe) {
     return fmt::format("the probe {} at {}", shown_name(probe.name, "one"), shown_place(probe.position));
 }
 
@@ -41,7 +41,7 @@ const char* how_it_stands(placement::Stand stand) {
 }
 
 // Whether it stands there, as it is stored.
-bool is_probe(const map::ManualProbe& probe, std::size_t p, std::span<const placement::Position> probes) {
+bool is_probe(const map::ProbeNode& probe, std::size_t p, std::span<const placement::Position> probes) {
     const placement::Position place = placement::to_position(probe.position);
     return probes[p].x == place.x && probes[p].y == place.y && probe_at(place, probes) == p;
 }
@@ -62,7 +62,7 @@ void warn_of_dark_probes(const trace::Scene& scene,
             ++dark;
             continue;
         }
-        for (const map::ManualProbe& probe : scene.map().probes) {
+        for (const map::ProbeNode& probe : scene.map().probes) {
             if (is_probe(probe, p, probes))
                 warnings.push_back(shown_probe(probe) + " is dark: no light of the map and no sky reach it");
         }
@@ -85,7 +85,7 @@ void warn_of_dark_probes(const trace::Scene& scene,
 void warn_of_buried_probe(const map::Map& map,
                           const placement::BuriedManual& buried,
                           std::vector<std::string>& warnings) {
-    for (const map::ManualProbe& probe : map.probes) {
+    for (const map::ProbeNode& probe : map.probes) {
         if (placement::to_position(probe.position) != buried.position)
             continue;
         warnings.push_back(fmt::format(
@@ -104,14 +104,15 @@ void warn_of_covered_ground(const trace::Scene& scene,
     constexpr float side_m = static_cast<float>(map::sector_size_m);
     std::size_t grounds = 0;
     std::map<std::uint32_t, std::size_t> covered;  // by thing
-    std::vector<trace::ColumnHit> hits;
+    std::vector<placement::ColumnHit> hits;
     for (std::int32_t n = 0; n < lines * lines; ++n) {
         const glm::vec2 share = (glm::vec2(n % lines, n / lines) + 0.5f) / float{lines};
         const glm::vec2 at = (glm::vec2(sector.i, sector.j) + share) * side_m;
         scene.column(at, hits);
-        const auto floor = std::ranges::find_if(hits.rbegin(), hits.rend(), [](const trace::ColumnHit& hit) {
-            return hit.up_facing && !hit.body;
-        });
+        const auto floor =
+            std::ranges::find_if(hits.rbegin(), hits.rend(), [](const placement::ColumnHit& hit) {
+                return hit.up_facing && !hit.body;
+            });
         if (floor == hits.rend())
             continue;
         ++grounds;
@@ -142,12 +143,12 @@ void warn_of_empty_places(const map::Map& map,
         ++by_name[shown_object(map, thing)];
     std::vector<std::pair<std::string, std::size_t>> most(by_name.begin(), by_name.end());
     std::ranges::stable_sort(most, std::greater(), [](const auto& entry) { return entry.second; });
-    constexpr std::size_t most_named = 3;
+    constexpr std::size_t max_named = 3;
     std::string names;
-    for (std::size_t n = 0; n < most.size() && n < most_named; ++n)
+    for (std::size_t n = 0; n < most.size() && n < max_named; ++n)
         names += fmt::format("{}{} ({})", n == 0 ? "" : ", ", most[n].first, most[n].second);
-    if (most.size() > most_named)
-        names += fmt::format(" and {} more", most.size() - most_named);
+    if (most.size() > max_named)
+        names += fmt::format(" and {} more", most.size() - max_named);
     warnings.push_back(
         fmt::format("sector ({}, {}): {} {} in solids and {} empty: {}",
                     sector.i,

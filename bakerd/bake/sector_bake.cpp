@@ -7,6 +7,7 @@
 #include "bakerd/bake/local_transfer.h"
 #include "bakerd/bake/placement_scene.h"
 #include "bakerd/bake/probe_warnings.h"
+#include "bakerd/bake/settings_key.h"
 #include "placement/grid.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@
 namespace drtv::bake {
 namespace {
 
-void store_report(const placement::Report& report, Statistics& statistics) {
+void store_report(const placement::PlacementReport& report, Statistics& statistics) {
     statistics.candidates = report.candidates;
     statistics.moved_out = report.moved_out;
     statistics.dropped_in_solid = report.dropped_in_solid;
@@ -43,7 +44,7 @@ class SectorBake {
   public:
     SectorBake(World& world,
                map::SectorCoordinate coordinate,
-               const Settings& settings,
+               const settings::BakeSettings& settings,
                const Given& given,
                const WatchOfThread& watch)
         : world_(world),
@@ -118,7 +119,7 @@ class SectorBake {
         }
         const trace::FloatMode float_mode;
         const placement::ProbeGrid grid = placement::build_grid(
-            coordinate_.i, coordinate_.j, grid_probes(), surroundings_of(*around_.scene, settings_.reach_m));
+            coordinate_.i, coordinate_.j, grid_probes(), queries_of(*around_.scene, settings_.reach_m));
         indexed_ = {
             {grid.z_origin_units, grid.cell_height_units, grid.cells}, grid.buried_cells, grid.blind_cells};
         baked_.sector.grid = indexed_.grid;
@@ -199,7 +200,7 @@ class SectorBake {
 
     World& world_;
     const map::SectorCoordinate coordinate_;
-    const Settings& settings_;
+    const settings::BakeSettings& settings_;
     const Given& given_;
     const WatchOfThread& watch_;
     const Surroundings around_;
@@ -214,7 +215,7 @@ class SectorBake {
 
 tl::expected<BakedSector, std::string> bake_sector(World& world,
                                                    map::SectorCoordinate coordinate,
-                                                   const Settings& settings,
+                                                   const settings::BakeSettings& settings,
                                                    const Given& given,
                                                    const WatchOfThread& watch) {
     const trace::FloatMode float_mode;

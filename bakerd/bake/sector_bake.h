@@ -5,8 +5,8 @@
 #include "bakerd/bake/placed_sector.h"
 #include "bakerd/bake/probe_encoding.h"
 #include "bakerd/bake/ray_watch.h"
-#include "bakerd/bake/settings.h"
 #include "bakerd/bake/world.h"
+#include "settings/bake_settings.h"
 
 #include <drtv/sector.h>
 
@@ -56,7 +56,7 @@ struct BakedSector {
 // placement's.
 [[nodiscard]] tl::expected<BakedSector, std::string> bake_sector(World& world,
                                                                  map::SectorCoordinate coordinate,
-                                                                 const Settings& settings,
+                                                                 const settings::BakeSettings& settings,
                                                                  const Given& given = {},
                                                                  const WatchOfThread& watch = {});
 

@@ -52,7 +52,7 @@ void StaticLight::add_drawn_at_probe(std::uint32_t path_number) {
 
 void StaticLight::add_at_surface(const Path& path, const trace::Hit& hit, const trace::Surface& surface) {
     const glm::vec3 point = path.ray.origin + path.ray.direction * hit.distance_m;
-    for (const Sun* sun : next_event_.suns())
+    for (const StaticSun* sun : next_event_.suns())
         add_incident(path, hit, surface, next_event_.towards(*sun, point));
     if (!next_event_.has_drawn_lights())
         return;
@@ -101,9 +101,9 @@ void StaticLight::add_direct() {
         if (seen != glm::vec3(0))
             sums_.add_direct(weights, light * seen);
     };
-    for (const Sun* sun : next_event_.suns())
+    for (const StaticSun* sun : next_event_.suns())
         add(next_event_.towards(*sun, task_.probe));
-    for (const PointLight* light : next_event_.points())
+    for (const StaticPointLight* light : next_event_.points())
         add(next_event_.towards(*light, task_.probe));
 }
 

@@ -30,7 +30,7 @@ World::World(std::shared_ptr<const trace::Device> device,
              std::shared_ptr<trace::MeshShelf> shelf)
     : geometry_(std::move(device), map, std::move(shelf)),
       lights_(map),
-      most_scattered_(lights_.empty() ? trace::least_scattered : trace::most_scattered(*map)),
+      max_scattered_(lights_.empty() ? trace::min_scattered : trace::max_scattered(*map)),
       scenes_(kept_scenes),
       placements_(kept_placements),
       samples_(kept_samples) {}
@@ -38,12 +38,12 @@ World::World(std::shared_ptr<const trace::Device> device,
 tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<const trace::Device> device,
                                                               std::shared_ptr<const map::Map> map,
                                                               std::shared_ptr<trace::MeshShelf> shelf) {
-    constexpr std::size_t most_emissive = std::size_t{1} << 23;  // triangles: half a gigabyte
-    if (const std::size_t count = emissive_triangles(*map); count > most_emissive) {
+    constexpr std::size_t max_emissive = std::size_t{1} << 23;  // triangles: half a gigabyte
+    if (const std::size_t count = emissive_triangles(*map); count > max_emissive) {
         return tl::unexpected(fmt::format(
             "the map's emissive surfaces have {} triangles, instances counted, over the limit of {}",
             count,
-            most_emissive));
+            max_emissive));
     }
     std::shared_ptr<World> world(new World(std::move(device), std::move(map), std::move(shelf)));
     auto sectors = map::sectors_of(world->map());
@@ -59,7 +59,7 @@ tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<co
 }
 
 tl::expected<void, std::string> World::open_volumes() {
-    for (const map::Volume& volume : map().volumes) {
+    for (const map::VolumeNode& volume : map().volumes) {
         auto closed = placement::ClosedVolume::make(volume.name, volume.positions, volume.triangles);
         if (!closed)
             return tl::unexpected(closed.error());
@@ -87,21 +87,21 @@ tl::expected<void, std::string> World::open_volumes() {
 
 // Every distance makes placement look farther around each sector.
 tl::expected<void, std::string> World::check_spacings() const {
-    constexpr std::size_t most_distances = 8;
+    constexpr std::size_t max_distances = 8;
     std::set<float> distances;
     for (const placement::SpacingVolume& spacing : tags_.spacings)
         distances.insert(spacing.min_distance_m);
-    if (distances.size() <= most_distances)
+    if (distances.size() <= max_distances)
         return {};
     return tl::unexpected(
         fmt::format("the map's bake_spacing volumes keep {} different distances, over the limit of {}",
                     distances.size(),
-                    most_distances));
+                    max_distances));
 }
 
 void World::tag_probes() {
-    for (const map::ManualProbe& probe : map().probes) {
-        placement::ManualProbe tagged{probe.position, {}};
+    for (const map::ProbeNode& probe : map().probes) {
+        placement::HandPlacedProbe tagged{probe.position, {}};
         for (const InteriorVolume& interior : interiors_) {
             if (interior.probe == placement::to_position(probe.position))
                 tagged.interiors.push_back(&interior.volume);
@@ -131,13 +131,13 @@ bool World::has_sector(map::SectorCoordinate sector) const {
 }
 
 std::shared_ptr<const Placed> World::placed(map::SectorCoordinate sector,
-                                            const Settings& settings,
+                                            const settings::BakeSettings& settings,
                                             const trace::Scene& scene) {
     return placements_.get({sector, settings.reach_m, settings.min_distance_m},
                            [&] { return place_sector(tags_, scene, sector, settings); });
 }
 
-Surroundings World::surroundings(map::SectorCoordinate sector, const Settings& settings) {
+Surroundings World::surroundings(map::SectorCoordinate sector, const settings::BakeSettings& settings) {
     return {scene_for(sector, scene_distance_m(tags_, settings)),
             samples(settings.rays, sample_dimensions(settings.bounces, !lights_.empty()))};
 }

@@ -6,11 +6,11 @@
 #include "bakerd/bake/placed_sector.h"
 #include "bakerd/bake/recent.h"
 #include "bakerd/bake/sampling.h"
-#include "bakerd/bake/settings.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/map/map.h"
 #include "bakerd/trace/scene.h"
 #include "placement/closed_volume.h"
+#include "settings/bake_settings.h"
 
 #include <memory>
 #include <string>
@@ -39,9 +39,9 @@ class World {
 
     [[nodiscard]] const map::Map& map() const { return *geometry_.map(); }
     [[nodiscard]] const StaticLights& lights() const { return lights_; }
-    [[nodiscard]] float most_scattered() const {
-        return most_scattered_;
-    }  // trace::most_scattered, where there are lights
+    [[nodiscard]] float max_scattered() const {
+        return max_scattered_;
+    }  // trace::max_scattered, where there are lights
     [[nodiscard]] const std::vector<InteriorVolume>& interiors() const { return interiors_; }
     // Of interiors that no file will hold; one sentence each.
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
@@ -58,12 +58,13 @@ class World {
     [[nodiscard]] std::shared_ptr<const trace::Scene> scene_for(map::SectorCoordinate sector,
                                                                 float distance_m);
 
-    [[nodiscard]] Surroundings surroundings(map::SectorCoordinate sector, const Settings& settings);
+    [[nodiscard]] Surroundings surroundings(map::SectorCoordinate sector,
+                                            const settings::BakeSettings& settings);
 
     // The probes of a sector, found once for itself and for all its neighbours. REQUIRES: the scene holds all
     // within scene_distance_m of a sector or of its neighbour.
     [[nodiscard]] std::shared_ptr<const Placed> placed(map::SectorCoordinate sector,
-                                                       const Settings& settings,
+                                                       const settings::BakeSettings& settings,
                                                        const trace::Scene& scene);
 
     [[nodiscard]] std::shared_ptr<const SampleTable> samples(std::uint32_t count, std::uint32_t dimensions);
@@ -95,7 +96,7 @@ class World {
 
     trace::MapGeometry geometry_;
     const StaticLights lights_;
-    const float most_scattered_;
+    const float max_scattered_;
     std::vector<map::SectorCoordinate> sectors_;  // sorted by (j, i)
     std::vector<InteriorVolume> interiors_;
     PlacementTags tags_;  // refers to the interiors

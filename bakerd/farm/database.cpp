@@ -16,7 +16,8 @@ bool is_damage(int sqlite_code) {
 tl::unexpected<store::Error> damaged(const std::string& path, const std::string& how) {
     return store::fail(
         store::ErrorCode::data_loss,
-        fmt::format("the database {} is damaged ({}): move it away, and jobs begin anew", path, how));
+        fmt::format(
+            "the database {} is damaged ({}): move it away, and start again without its jobs", path, how));
 }
 
 }  // namespace

@@ -115,9 +115,8 @@ Result<JobView> Farm::create_planned(const JobRequest& request) {
     job.manifest = request.manifest;
     job.inventory = planned->inventory;
     job.preset = request.preset;
-    job.settings = planned->settings;
+    job.settings = request.settings;
     job.region = request.region;
-    job.overrides = request.overrides;
     job.created_ms = unix_milliseconds();
     if (auto written = write_job(*database_, planned->plan, job); !written)
         return tl::unexpected(written.error());
@@ -191,7 +190,7 @@ Result<JobView> Farm::wait_for_change(std::int64_t id,
     return with_warnings(book_.wait_for_change(id, seen, patience), id);
 }
 
-SectorView Farm::view_of(Checked<JobSectorRow> sector) const {
+JobSectorView Farm::view_of(Checked<JobSectorRow> sector) const {
     if (!sector.sound) {
         sector.row.state = SectorState::failed;
         sector.row.error = "its row in the database is damaged";
@@ -201,20 +200,22 @@ SectorView Farm::view_of(Checked<JobSectorRow> sector) const {
     return {std::move(sector.row), running};
 }
 
-Result<std::vector<SectorView>> Farm::list_sectors(std::int64_t id, std::int64_t first, std::int64_t count) {
+Result<std::vector<JobSectorView>> Farm::list_sectors(std::int64_t id,
+                                                      std::int64_t first,
+                                                      std::int64_t count) {
     if (!book_.view(id))
         return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
     auto rows =
         database_->read([&](Connection& connection) { return sectors_of_job(connection, id, first, count); });
     if (!rows)
         return tl::unexpected(rows.error());
-    std::vector<SectorView> views;
+    std::vector<JobSectorView> views;
     for (Checked<JobSectorRow>& row : *rows)
         views.push_back(view_of(std::move(row)));
     return views;
 }
 
-Result<SectorView> Farm::get_sector(std::int64_t id, map::SectorCoordinate sector) {
+Result<JobSectorView> Farm::get_sector(std::int64_t id, map::SectorCoordinate sector) {
     if (!book_.view(id))
         return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
     auto row = database_->read([&](Connection& connection) { return sector_of_job(connection, id, sector); });

@@ -37,7 +37,7 @@ struct CacheView {
     std::int64_t limit_bytes = 0;
 };
 
-struct SectorView {
+struct JobSectorView {
     JobSectorRow row;
     bool running = false;
 };
@@ -75,10 +75,10 @@ class Farm {
                                                          std::chrono::milliseconds patience);
 
     // In the order of (j, i).
-    [[nodiscard]] store::Result<std::vector<SectorView>> list_sectors(std::int64_t job,
-                                                                      std::int64_t first,
-                                                                      std::int64_t count);
-    [[nodiscard]] store::Result<SectorView> get_sector(std::int64_t job, map::SectorCoordinate sector);
+    [[nodiscard]] store::Result<std::vector<JobSectorView>> list_sectors(std::int64_t job,
+                                                                         std::int64_t first,
+                                                                         std::int64_t count);
+    [[nodiscard]] store::Result<JobSectorView> get_sector(std::int64_t job, map::SectorCoordinate sector);
 
     [[nodiscard]] store::Result<CacheView> cache();
     // Removes all results that no running job holds; gives what is left.
@@ -95,7 +95,7 @@ class Farm {
     [[nodiscard]] store::Result<JobView> create_planned(const JobRequest& request);
     // Jobs in memory know no warnings of sectors.
     [[nodiscard]] store::Result<JobView> with_warnings(std::optional<JobView> view, std::int64_t id);
-    [[nodiscard]] SectorView view_of(Checked<JobSectorRow> sector) const;
+    [[nodiscard]] JobSectorView view_of(Checked<JobSectorRow> sector) const;
 
     const Options options_;
     const std::unique_ptr<DataFolder> folder_;

@@ -10,7 +10,7 @@ namespace drtv::farm {
 void JobBook::add(JobRow row, std::span<const WantedSector> wanted, std::vector<std::string> warnings) {
     // A map from before there were inventories is like no other.
     const Digest& content = row.inventory == Digest{} ? row.manifest : row.inventory;
-    BakeKey key{reuse::results_key(row.settings), content, {}, 0};
+    BakeKey key{reuse::results_key(row.settings.bake), content, {}, 0};
     const std::lock_guard lock(mutex_);
     Job& job = jobs_[row.id];
     job.row = std::move(row);

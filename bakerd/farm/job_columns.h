@@ -3,22 +3,24 @@
 
 #include "bakerd/farm/records.h"
 #include "bakerd/farm/row_codec.h"
+#include "settings/table.h"
 
 #include <optional>
+#include <string>
 
 namespace drtv::farm {
 
-void region_columns(auto& codec, const std::optional<Region>& region) {
-    const auto bound = [&](double Region::*side) {
+void region_columns(auto& codec, const std::optional<JobRegion>& region) {
+    const auto bound = [&](double JobRegion::*side) {
         return region ? std::optional<double>((*region).*side) : std::nullopt;
     };
-    codec("x0", bound(&Region::x0));
-    codec("y0", bound(&Region::y0));
-    codec("x1", bound(&Region::x1));
-    codec("y1", bound(&Region::y1));
+    codec("x0", bound(&JobRegion::x0));
+    codec("y0", bound(&JobRegion::y0));
+    codec("x1", bound(&JobRegion::x1));
+    codec("y1", bound(&JobRegion::y1));
 }
 
-void region_columns(auto& codec, std::optional<Region>& region) {
+void region_columns(auto& codec, std::optional<JobRegion>& region) {
     std::optional<double> x0;
     std::optional<double> y0;
     std::optional<double> x1;
@@ -28,7 +30,15 @@ void region_columns(auto& codec, std::optional<Region>& region) {
     codec("x1", x1);
     codec("y1", y1);
     if (x0 && y0 && x1 && y1)
-        region = Region{*x0, *y0, *x1, *y1};
+        region = JobRegion{*x0, *y0, *x1, *y1};
+}
+
+// A column for each setting, of its name and type.
+void settings_columns(auto& codec, Is<settings::JobSettings> auto& settings) {
+    for (const settings::Setting& setting : settings::table()) {
+        const std::string column = "setting_" + std::string(setting.name);
+        settings::visit_value(settings, setting, [&](auto& value) { codec(column, value); });
+    }
 }
 
 void columns(auto& codec, Is<JobRow> auto& job) {
@@ -36,15 +46,7 @@ void columns(auto& codec, Is<JobRow> auto& job) {
     codec("manifest", job.manifest);
     codec("inventory", job.inventory);
     codec("preset", job.preset);
-    codec("rays", job.settings.rays);
-    codec("bounces", job.settings.bounces);
-    codec("reach_m", job.settings.reach_m);
-    codec("min_distance_m", job.settings.min_distance_m);
-    codec("error_asked", job.settings.error);
-    codec("local_transfer", job.settings.local_transfer);
-    codec("local_bounces", job.settings.local_bounces);
-    codec("local_rays", job.settings.local_rays);
-    codec("tolerance", job.settings.tolerance);
+    settings_columns(codec, job.settings);
     region_columns(codec, job.region);
     codec("state", job.state);
     codec("error", job.error);

@@ -11,7 +11,7 @@
 namespace drtv::farm {
 namespace {
 
-bool touches(const Region& region, const map::SectorCoordinate& sector) {
+bool touches(const JobRegion& region, const map::SectorCoordinate& sector) {
     const double x = sector.i * map::sector_size_m;
     const double y = sector.j * map::sector_size_m;
     // A sector is half open: a region that ends on its eastern or northern border does not touch it from
@@ -22,17 +22,6 @@ bool touches(const Region& region, const map::SectorCoordinate& sector) {
 
 }  // namespace
 
-store::Result<bake::Settings> settings_of(const JobRequest& request) {
-    auto settings = bake::preset(request.preset);
-    if (!settings)
-        return store::fail(store::ErrorCode::invalid_argument, settings.error());
-    for (const auto& [key, value] : request.overrides) {
-        if (auto set = bake::set(*settings, key, value); !set)
-            return store::fail(store::ErrorCode::invalid_argument, set.error());
-    }
-    return *settings;
-}
-
 std::vector<map::SectorCoordinate> in_order_of_baking(std::vector<map::SectorCoordinate> sectors) {
     std::ranges::sort(sectors, {}, [](const map::SectorCoordinate& sector) {
         const map::SectorCoordinate tile = bake::tile_of(sector);
@@ -42,7 +31,7 @@ std::vector<map::SectorCoordinate> in_order_of_baking(std::vector<map::SectorCoo
 }
 
 store::Result<std::vector<map::SectorCoordinate>> sectors_of(
-    const std::optional<Region>& region, const std::vector<map::SectorCoordinate>& with_ground) {
+    const std::optional<JobRegion>& region, const std::vector<map::SectorCoordinate>& with_ground) {
     std::vector<map::SectorCoordinate> chosen;
     if (region) {
         for (double bound : {region->x0, region->y0, region->x1, region->y1}) {

@@ -1,11 +1,10 @@
-// What a client asks for, checked: settings out of preset and overrides, sectors out of map and region.
+// What a client asks for, and the sectors that this means.
 #pragma once
 
-#include "bakerd/bake/settings.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/store/error.h"
+#include "settings/bake_settings.h"
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,7 +12,7 @@
 namespace drtv::farm {
 
 // World metres; both ends touch.
-struct Region {
+struct JobRegion {
     double x0 = 0;
     double y0 = 0;
     double x1 = 0;
@@ -22,13 +21,11 @@ struct Region {
 
 struct JobRequest {
     map::Digest manifest;
-    std::string preset;
-    std::map<std::string, std::string> overrides;  // as text
-    std::optional<Region> region;
+    std::string preset;              // the settings' origin, to be shown
+    settings::JobSettings settings;  // each in its range (settings::check)
+    std::optional<JobRegion> region;
     std::string request_id;  // empty, or at most 64 bytes
 };
-
-[[nodiscard]] store::Result<bake::Settings> settings_of(const JobRequest& request);
 
 // 8 x 8 tiles after each other, so that neighbours share a scene.
 [[nodiscard]] std::vector<map::SectorCoordinate> in_order_of_baking(
@@ -37,6 +34,6 @@ struct JobRequest {
 // Of the map's sectors with ground those the region touches, in the order of baking. invalid_argument when
 // the region is wrong or touches none.
 [[nodiscard]] store::Result<std::vector<map::SectorCoordinate>> sectors_of(
-    const std::optional<Region>& region, const std::vector<map::SectorCoordinate>& with_ground);
+    const std::optional<JobRegion>& region, const std::vector<map::SectorCoordinate>& with_ground);
 
 }  // namespace drtv::farm

@@ -11,18 +11,6 @@ namespace drtv::farm {
 
 namespace {
 
-struct OverrideRow {
-    std::int64_t job = 0;
-    std::string key;
-    std::string value;
-};
-
-void columns(auto& codec, Is<OverrideRow> auto& setting) {
-    codec("job", setting.job);
-    codec("key", setting.key);
-    codec("value", setting.value);
-}
-
 template <class Row>
 void write_row(SQLite::Statement& statement, const Row& row) {
     RowBinder binder(statement);
@@ -40,17 +28,9 @@ Checked<Row> read_row(SQLite::Statement& statement) {
 }
 
 // Where the id follows the columns and their soundness.
-Checked<JobRow> read_job(Connection& connection, SQLite::Statement& statement) {
+Checked<JobRow> read_job(SQLite::Statement& statement) {
     Checked<JobRow> job = read_row<JobRow>(statement);
     job.row.id = statement.getColumn(statement.getColumnCount() - 1).getInt64();
-    SQLite::Statement& overrides =
-        connection.statement(select_from<OverrideRow>("job_override", "WHERE job = ?"));
-    overrides.bind(1, job.row.id);
-    while (overrides.executeStep()) {
-        const Checked<OverrideRow> setting = read_row<OverrideRow>(overrides);
-        job.row.overrides[setting.row.key] = setting.row.value;
-        job.sound &= setting.sound;
-    }
     return job;
 }
 
@@ -105,9 +85,6 @@ void insert_job(Connection& connection, JobRow& job) {
     job.state = JobState::creating;
     write_row(connection.statement(insert_into<JobRow>("job")), job);
     job.id = connection.last_id();
-    for (const auto& [key, value] : job.overrides)
-        write_row(connection.statement(insert_into<OverrideRow>("job_override")),
-                  OverrideRow{job.id, key, value});
 }
 
 void insert_sectors(Connection& connection, std::span<const JobSectorRow> sectors) {
@@ -172,21 +149,19 @@ std::optional<Checked<JobRow>> find_job(Connection& connection, std::int64_t id)
     statement.bind(1, id);
     if (!statement.executeStep())
         return std::nullopt;
-    return read_job(connection, statement);
+    return read_job(statement);
 }
 
 std::vector<Checked<JobRow>> all_jobs(Connection& connection) {
     SQLite::Statement& statement = connection.statement(select_from<JobRow>("job", "ORDER BY id", ", id"));
     std::vector<Checked<JobRow>> jobs;
     while (statement.executeStep())
-        jobs.push_back(read_job(connection, statement));
+        jobs.push_back(read_job(statement));
     return jobs;
 }
 
 void remove_job(Connection& connection, std::int64_t id) {
-    for (const char* sql : {"DELETE FROM job_sector WHERE job = ?",
-                            "DELETE FROM job_override WHERE job = ?",
-                            "DELETE FROM job WHERE id = ?"}) {
+    for (const char* sql : {"DELETE FROM job_sector WHERE job = ?", "DELETE FROM job WHERE id = ?"}) {
         SQLite::Statement& remove = connection.statement(sql);
         remove.bind(1, id);
         remove.exec();

@@ -8,7 +8,7 @@
 namespace drtv::farm {
 namespace {
 
-const worker::Failure stopping{"the server is stopping", true};
+const worker::RequestFailure stopping{"the server is stopping", true};
 
 }  // namespace
 
@@ -130,7 +130,7 @@ void LocalExecutor::handle_answer(const worker::Answer& answer) {
         return;
     Work work = std::move(found->second);
     in_flight_.erase(found);
-    const auto* failure = std::get_if<worker::Failure>(&answer.what);
+    const auto* failure = std::get_if<worker::RequestFailure>(&answer.what);
     if (failure != nullptr && failure->may_retry)
         retry_or_fail(std::move(work), failure->sentence);
     else
@@ -156,7 +156,8 @@ void LocalExecutor::retry_or_fail(Work work, const std::string& sentence) {
         again_.push_back(std::move(work));
         return;
     }
-    finish(work, worker::Failure{fmt::format("{} (tried {} times)", sentence, work.failed_attempts), false});
+    finish(work,
+           worker::RequestFailure{fmt::format("{} (tried {} times)", sentence, work.failed_attempts), false});
 }
 
 void LocalExecutor::finish(Work& work, Outcome outcome) {

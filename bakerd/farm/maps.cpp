@@ -27,7 +27,7 @@ store::Result<MapView> Maps::create(store::Manifest given) {
         return MapView{*id, std::move(*manifest), **known};
     const auto summary = executor_.inspect({*id}).get();
     if (!summary) {
-        const worker::Failure& failure = summary.error();
+        const worker::RequestFailure& failure = summary.error();
         return store::fail(
             failure.may_retry ? store::ErrorCode::unavailable : store::ErrorCode::invalid_argument,
             failure.sentence);

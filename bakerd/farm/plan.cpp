@@ -25,9 +25,9 @@ float distance_m(const map::SectorCoordinate& sector, const map::Bounds& bounds)
 }
 
 // Around the nearest change.
-float ring_of(const map::SectorCoordinate& sector, std::span<const worker::Assessments::Change> changes) {
+float ring_of(const map::SectorCoordinate& sector, std::span<const worker::MapChange> changes) {
     float nearest_m = std::numeric_limits<float>::max();
-    for (const worker::Assessments::Change& change : changes)
+    for (const worker::MapChange& change : changes)
         nearest_m = std::min(nearest_m, distance_m(sector, change.bounds));
     return std::floor(nearest_m / ring_m);
 }
@@ -88,7 +88,7 @@ store::Result<Plan> look_up(ResultCache& cache,
 
 std::optional<worker::AssessRequest> make_assess_request(const Plan& plan,
                                                          const Digest& manifest,
-                                                         const bake::Settings& settings) {
+                                                         const settings::JobSettings& settings) {
     worker::AssessRequest request{manifest, settings, {}};
     for (const PlannedSector& planned : plan.sectors) {
         if (planned.candidates.empty())

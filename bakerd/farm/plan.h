@@ -36,7 +36,7 @@ struct PlannedSector {
 
 struct Plan {
     std::vector<PlannedSector> sectors;  // in the order of baking
-    std::vector<worker::Assessments::Change> changes;
+    std::vector<worker::MapChange> changes;
     std::vector<std::string> warnings;
 
     [[nodiscard]] std::int64_t count(reuse::Verdict verdict) const;
@@ -51,7 +51,7 @@ struct Plan {
 // The question about the candidates; nothing when there are none.
 [[nodiscard]] std::optional<worker::AssessRequest> make_assess_request(const Plan& plan,
                                                                        const Digest& manifest,
-                                                                       const bake::Settings& settings);
+                                                                       const settings::JobSettings& settings);
 
 // Takes in the answer to make_assess_request(plan), and puts sectors near changes first.
 void merge_answer(const worker::Assessments& answer, Plan& plan);

@@ -12,20 +12,18 @@
 namespace drtv::farm {
 
 store::Result<PlannedJob> Planner::plan(const JobRequest& request, CachePin& pin) {
-    const auto settings = settings_of(request);
-    if (!settings)
-        return tl::unexpected(settings.error());
     const auto map = maps_.summary_of(request.manifest);
     if (!map)
         return tl::unexpected(map.error());
     const auto sectors = sectors_of(request.region, map->sectors);
     if (!sectors)
         return tl::unexpected(sectors.error());
-    const CacheQuery query{reuse::results_key(*settings), map->inventory, settings->tolerance};
+    const CacheQuery query{
+        reuse::results_key(request.settings.bake), map->inventory, request.settings.tolerance};
     auto plan = look_up(cache_, *sectors, query, pin);
     if (!plan)
         return tl::unexpected(plan.error());
-    if (auto question = make_assess_request(*plan, request.manifest, *settings)) {
+    if (auto question = make_assess_request(*plan, request.manifest, request.settings)) {
         const auto answer = ask(std::move(*question));
         if (!answer && answer.error().may_retry)
             return store::fail(store::ErrorCode::unavailable, answer.error().sentence);
@@ -38,7 +36,7 @@ store::Result<PlannedJob> Planner::plan(const JobRequest& request, CachePin& pin
     drop_damaged(blobs_, *plan);
     for (const std::string& warning : plan->warnings)
         spdlog::warn("{}", warning);
-    return PlannedJob{*settings, map->inventory, std::move(*plan)};
+    return PlannedJob{map->inventory, std::move(*plan)};
 }
 
 // In portions, so that other questions are answered in between.
@@ -55,7 +53,7 @@ Reply<worker::Assessments> Planner::ask(worker::AssessRequest question) {
             return answer;
         all.sectors.insert(all.sectors.end(), answer->sectors.begin(), answer->sectors.end());
         all.warnings.insert(all.warnings.end(), answer->warnings.begin(), answer->warnings.end());
-        for (worker::Assessments::Change& change : answer->changes) {
+        for (worker::MapChange& change : answer->changes) {
             if (std::ranges::find(all.changes, change) == all.changes.end())
                 all.changes.push_back(std::move(change));
         }

@@ -1,4 +1,4 @@
-// What a job would do: its settings and sectors, and what of them is there.
+// What a job would do: its sectors, and what of them is there.
 #pragma once
 
 #include "bakerd/farm/job_request.h"
@@ -11,7 +11,6 @@
 namespace drtv::farm {
 
 struct PlannedJob {
-    bake::Settings settings;
     Digest inventory;  // of the map
     Plan plan;
 };

@@ -1,7 +1,6 @@
 // What the farm's database keeps, as rows.
 #pragma once
 
-#include "bakerd/bake/settings.h"
 #include "bakerd/farm/job_request.h"
 #include "bakerd/map/digest.h"
 #include "bakerd/map/ground.h"
@@ -9,7 +8,6 @@
 #include "bakerd/worker/requests.h"
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,8 +32,8 @@ struct JobRow {
     Digest manifest;
     Digest inventory;  // of the map
     std::string preset;
-    bake::Settings settings;
-    std::optional<Region> region;
+    settings::JobSettings settings;
+    std::optional<JobRegion> region;
     JobState state = JobState::running;
     std::string error;
     std::int64_t sectors_total = 0;
@@ -47,9 +45,6 @@ struct JobRow {
     float largest_bound = 0;          // of near hits, and of probes that others reused
     std::int64_t created_ms = 0;      // Unix time
     std::int64_t ended_ms = 0;        // 0: it has not
-
-    // As asked, by key; kept apart from the row.
-    std::map<std::string, std::string> overrides;
 };
 
 // A sector of a job.

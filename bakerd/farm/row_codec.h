@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -27,7 +28,7 @@ concept Is = std::same_as<std::remove_const_t<Self>, Struct>;
 // The names of columns.
 class ColumnNames {
   public:
-    void operator()(const char* name, const auto&) { names_.push_back(name); }
+    void operator()(std::string_view name, const auto&) { names_.emplace_back(name); }
 
     // "a, b", ":a, :b" and "a = :a, b = :b".
     [[nodiscard]] std::string list(const std::string& prefix = "") const;
@@ -43,25 +44,27 @@ class RowBinder {
     explicit RowBinder(SQLite::Statement& statement) : statement_(statement) {}
 
     template <std::integral Integer>
-    void operator()(const char* name, const Integer& value) {
+    void operator()(std::string_view name, const Integer& value) {
         statement_.bind(key(name), static_cast<std::int64_t>(value));
     }
     template <class Enum>
     requires std::is_enum_v<Enum>
-    void operator()(const char* name, const Enum& value) {
+    void operator()(std::string_view name, const Enum& value) {
         statement_.bind(key(name), static_cast<std::int64_t>(value));
     }
     template <std::floating_point Real>
-    void operator()(const char* name, const Real& value) {
+    void operator()(std::string_view name, const Real& value) {
         statement_.bind(key(name), static_cast<double>(value));
     }
-    void operator()(const char* name, const std::string& value) { statement_.bind(key(name), value); }
-    void operator()(const char* name, const map::Digest& value) { statement_.bind(key(name), to_hex(value)); }
-    void operator()(const char* name, const std::vector<std::string>& value) {
+    void operator()(std::string_view name, const std::string& value) { statement_.bind(key(name), value); }
+    void operator()(std::string_view name, const map::Digest& value) {
+        statement_.bind(key(name), to_hex(value));
+    }
+    void operator()(std::string_view name, const std::vector<std::string>& value) {
         statement_.bind(key(name), joined(value));
     }
     template <class Value>
-    void operator()(const char* name, const std::optional<Value>& value) {
+    void operator()(std::string_view name, const std::optional<Value>& value) {
         if (value)
             (*this)(name, *value);
         else
@@ -69,7 +72,7 @@ class RowBinder {
     }
 
   private:
-    static std::string key(const char* name) { return std::string(":") + name; }
+    static std::string key(std::string_view name) { return ":" + std::string(name); }
 
     SQLite::Statement& statement_;
 };
@@ -80,23 +83,23 @@ class RowReader {
     explicit RowReader(SQLite::Statement& statement) : statement_(statement) {}
 
     template <std::integral Integer>
-    void operator()(const char*, Integer& value) {
+    void operator()(std::string_view, Integer& value) {
         value = static_cast<Integer>(next().getInt64());
     }
     template <class Enum>
     requires std::is_enum_v<Enum>
-    void operator()(const char*, Enum& value) { value = static_cast<Enum>(next().getInt64()); }
+    void operator()(std::string_view, Enum& value) { value = static_cast<Enum>(next().getInt64()); }
     template <std::floating_point Real>
-    void operator()(const char*, Real& value) {
+    void operator()(std::string_view, Real& value) {
         value = static_cast<Real>(next().getDouble());
     }
-    void operator()(const char*, std::string& value) { value = next().getString(); }
-    void operator()(const char*, map::Digest& value) {
+    void operator()(std::string_view, std::string& value) { value = next().getString(); }
+    void operator()(std::string_view, map::Digest& value) {
         value = map::digest_from_hex(next().getString()).value_or(map::Digest{});
     }
-    void operator()(const char*, std::vector<std::string>& value) { value = split(next().getString()); }
+    void operator()(std::string_view, std::vector<std::string>& value) { value = split(next().getString()); }
     template <class Value>
-    void operator()(const char* name, std::optional<Value>& value) {
+    void operator()(std::string_view name, std::optional<Value>& value) {
         if (statement_.getColumn(column_).isNull())
             static_cast<void>(next());
         else

@@ -159,6 +159,19 @@ UPDATE result SET sum = row_sum(i, j, results_key, file, footprint, inventory, f
   rays, warnings, seconds, bound);
 UPDATE hold SET sum = row_sum(result, inventory, bound);
 )sql",
+    // A job's settings stand in columns alone, under the settings' own names.
+    R"sql(
+DROP TABLE job_override;
+ALTER TABLE job RENAME COLUMN rays TO setting_rays;
+ALTER TABLE job RENAME COLUMN bounces TO setting_bounces;
+ALTER TABLE job RENAME COLUMN reach_m TO setting_reach;
+ALTER TABLE job RENAME COLUMN min_distance_m TO setting_min_distance;
+ALTER TABLE job RENAME COLUMN error_asked TO setting_error;
+ALTER TABLE job RENAME COLUMN local_transfer TO setting_lprt;
+ALTER TABLE job RENAME COLUMN local_bounces TO setting_lprt_bounces;
+ALTER TABLE job RENAME COLUMN local_rays TO setting_lprt_rays;
+ALTER TABLE job RENAME COLUMN tolerance TO setting_tolerance;
+)sql",
 };
 
 constexpr auto newest = static_cast<std::int64_t>(steps.size());

@@ -7,6 +7,6 @@ namespace drtv::map {
 
 // Dense and sparse parts alike. Whether the elements lie inside the views shows when they are read
 // (accessor.h).
-[[nodiscard]] Failure check_accessors(const Checker& check);
+[[nodiscard]] CheckResult check_accessors(const Checker& check);
 
 }  // namespace drtv::map

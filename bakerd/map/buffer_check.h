@@ -21,6 +21,6 @@ struct OutsideBytes {
 
 // Checks all of them, each view against its buffer too. The uri of a buffer or image outside becomes its
 // place in `outside`, to which it is added; a data uri becomes one that tinygltf reads.
-[[nodiscard]] Failure check_buffers(const Checker& check, std::vector<OutsideBytes>& outside);
+[[nodiscard]] CheckResult check_buffers(const Checker& check, std::vector<OutsideBytes>& outside);
 
 }  // namespace drtv::map

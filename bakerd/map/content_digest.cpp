@@ -111,7 +111,7 @@ Digest digest_object(const Object& object, const Map& map) {
     return hasher.finish();
 }
 
-Digest digest_volume(const Volume& volume) {
+Digest digest_volume(const VolumeNode& volume) {
     Hasher hasher;
     hasher.add(Tag::volume);
     hasher.add(volume.kind);
@@ -139,7 +139,7 @@ Digest digest_light(const Light& light, const Map& map) {
 
 void finish_content(Map& map) {
     std::ranges::stable_sort(map.objects, {}, &Object::digest);
-    std::stable_sort(map.probes.begin(), map.probes.end(), [](const ManualProbe& a, const ManualProbe& b) {
+    std::stable_sort(map.probes.begin(), map.probes.end(), [](const ProbeNode& a, const ProbeNode& b) {
         return std::tuple(a.position.x, a.position.y, a.position.z) <
                std::tuple(b.position.x, b.position.y, b.position.z);
     });
@@ -150,13 +150,13 @@ void finish_content(Map& map) {
     std::ranges::stable_sort(map.lights, {}, &Light::digest);
     for (const Light& light : map.lights)
         lights.push_back(light.digest);
-    for (const Volume& volume : map.volumes) {
+    for (const VolumeNode& volume : map.volumes) {
         Hasher hasher;
         hasher.add(volume.digest);
         // The name says which probe an interior uses; what counts is where that probe stands.
         hasher.add(!volume.probe_name.empty());
         if (!volume.probe_name.empty())
-            hasher.add(std::ranges::find(map.probes, volume.probe_name, &ManualProbe::name)->position);
+            hasher.add(std::ranges::find(map.probes, volume.probe_name, &ProbeNode::name)->position);
         volumes.push_back(hasher.finish());
     }
     sort_by(volumes, map.volumes);
@@ -167,7 +167,7 @@ void finish_content(Map& map) {
     for (const Object& object : map.objects)
         hasher.add(object.digest);
     hasher.add(static_cast<std::uint64_t>(map.probes.size()));
-    for (const ManualProbe& probe : map.probes)
+    for (const ProbeNode& probe : map.probes)
         hasher.add(probe.position);
     hasher.add_sized(volumes);
     hasher.add_sized(lights);

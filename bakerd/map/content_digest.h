@@ -15,7 +15,7 @@ namespace drtv::map {
 [[nodiscard]] Digest digest_primitive(const Primitive& primitive, const Map& map);
 [[nodiscard]] Digest digest_mesh(const Mesh& mesh);
 [[nodiscard]] Digest digest_object(const Object& object, const Map& map);
-[[nodiscard]] Digest digest_volume(const Volume& volume);
+[[nodiscard]] Digest digest_volume(const VolumeNode& volume);
 [[nodiscard]] Digest digest_light(const Light& light, const Map& map);
 
 // A thing's group by its name, and nothing where it has none: the index depends on the files.

@@ -32,45 +32,45 @@ bool nested_deeper(std::string_view json, int levels) {
     return false;
 }
 
-Failure check_asset(const Checker& check, Json& root) {
+CheckResult check_asset(const Checker& check, Json& root) {
     const auto asset = root.find("asset");
     if (asset == root.end())
-        return "it has no asset: not a glTF 2.0 file";
+        return wrong("it has no asset: not a glTF 2.0 file");
     const std::initializer_list<Property> members = {required(string_at("version")), string_at("minVersion")};
-    if (Failure failure = check.properties(*asset, "asset", members))
-        return failure;
+    if (CheckResult checked = check.properties(*asset, "asset", members); !checked)
+        return checked;
     const Json& version = (*asset)["version"];
     if (!version.get<std::string>().starts_with("2."))
-        return fmt::format("it is glTF version {}, only 2.x is supported", shown(version));
+        return wrong("it is glTF version {}, only 2.x is supported", shown(version));
     const auto minimum = asset->find("minVersion");
     if (minimum != asset->end() && minimum->get<std::string>() != "2.0")
-        return fmt::format("it needs glTF version {}, only 2.0 is supported", shown(*minimum));
+        return wrong("it needs glTF version {}, only 2.0 is supported", shown(*minimum));
     return {};
 }
 
 // Each kind of element before those that name it.
-Failure check_all(Json& root, std::vector<OutsideBytes>& outside) {
+CheckResult check_all(Json& root, std::vector<OutsideBytes>& outside) {
     if (!root.is_object())
-        return "its JSON is not an object";
+        return wrong("its JSON is not an object");
     const Checker check(root);
-    if (Failure failure = check_asset(check, root))
-        return failure;
-    if (Failure failure = check_extensions(root))
-        return failure;
+    if (CheckResult checked = check_asset(check, root); !checked)
+        return checked;
+    if (CheckResult checked = check_extensions(root); !checked)
+        return checked;
     const std::initializer_list<Property> members = {reference_at("scene", "scenes"),
                                                      object_at("extensions")};
-    if (Failure failure = check.properties(root, "the file", members))
-        return failure;
-    if (Failure failure = check_buffers(check, outside))
-        return failure;
-    if (Failure failure = check_accessors(check))
-        return failure;
-    if (Failure failure = check_materials(check))
-        return failure;
-    if (Failure failure = check_meshes(check))
-        return failure;
-    if (Failure failure = check_nodes(check, root))
-        return failure;
+    if (CheckResult checked = check.properties(root, "the file", members); !checked)
+        return checked;
+    if (CheckResult checked = check_buffers(check, outside); !checked)
+        return checked;
+    if (CheckResult checked = check_accessors(check); !checked)
+        return checked;
+    if (CheckResult checked = check_materials(check); !checked)
+        return checked;
+    if (CheckResult checked = check_meshes(check); !checked)
+        return checked;
+    if (CheckResult checked = check_nodes(check, root); !checked)
+        return checked;
     return check_node_tree(root);
 }
 
@@ -83,8 +83,8 @@ tl::expected<CheckedDocument, std::string> check_document(std::string_view json)
     if (root.is_discarded())
         return tl::unexpected(std::string("it is not glTF: its JSON cannot be parsed"));
     CheckedDocument checked;
-    if (Failure failure = check_all(root, checked.outside))
-        return tl::unexpected(*failure);
+    if (CheckResult all = check_all(root, checked.outside); !all)
+        return tl::unexpected(all.error());
     for (const char* unneeded : {"animations", "skins", "cameras"})
         root.erase(unneeded);
     checked.json = root.dump();

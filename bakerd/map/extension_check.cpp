@@ -68,20 +68,20 @@ bool is_supported(std::string_view extension) {
 
 }  // namespace
 
-Failure check_extensions(const Json& root) {
+CheckResult check_extensions(const Json& root) {
     for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
         const auto found = root.find(list);
         if (found == root.end())
             continue;
         if (!found->is_array())
-            return fmt::format("{} must be an array", list);
+            return wrong("{} must be an array", list);
         const bool required = std::string_view(list) == "extensionsRequired";
         for (const Json& name : *found) {
             if (!name.is_string())
-                return fmt::format("{} must hold strings, it holds {}", list, shown(name));
+                return wrong("{} must hold strings, it holds {}", list, shown(name));
             const std::string extension = name.get<std::string>();
             if (required && !is_supported(extension))
-                return fmt::format("it requires the extension {}, which is not supported", extension);
+                return wrong("it requires the extension {}, which is not supported", extension);
         }
     }
     return {};

@@ -9,7 +9,7 @@ namespace drtv::map {
 
 // Checks extensionsUsed and extensionsRequired: arrays of names, and no required one is unknown to the
 // importer. An extension that is only used may be passed over, so any name will do.
-[[nodiscard]] Failure check_extensions(const Json& root);
+[[nodiscard]] CheckResult check_extensions(const Json& root);
 
 // Whether a bake lacks something that a file says with this extension, or may.
 [[nodiscard]] bool is_passed_over(std::string_view extension);

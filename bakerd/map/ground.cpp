@@ -49,7 +49,7 @@ SectorCoordinate sector_of(double x_m, double y_m) {
 }
 
 // As it is placed, in whole units.
-SectorCoordinate sector_holding(const ManualProbe& probe) {
+SectorCoordinate sector_holding(const ProbeNode& probe) {
     const auto rounded = [](double m) { return std::round(m * position_units_per_m) / position_units_per_m; };
     return sector_of(rounded(probe.position.x), rounded(probe.position.y));
 }
@@ -198,7 +198,7 @@ tl::expected<std::vector<SectorCoordinate>, std::string> sectors_of(const Map& m
         if (found.size() > max_sectors)
             break;
     }
-    for (const ManualProbe& probe : map.probes)
+    for (const ProbeNode& probe : map.probes)
         found.insert(sector_holding(probe));
     if (found.size() > max_sectors)
         return tl::unexpected(fmt::format("the map covers more than {} sectors", max_sectors));

@@ -28,10 +28,10 @@ Imported check_interiors(const Map& map, const std::vector<FileEnd>& ends) {
     for (std::size_t n = 0; n < map.volumes.size(); ++n) {
         while (n >= end->volumes)
             ++end;
-        const Volume& volume = map.volumes[n];
+        const VolumeNode& volume = map.volumes[n];
         if (volume.probe_name.empty())
             continue;
-        const auto named = std::ranges::count(map.probes, volume.probe_name, &ManualProbe::name);
+        const auto named = std::ranges::count(map.probes, volume.probe_name, &ProbeNode::name);
         if (named != 1) {
             return tl::unexpected(fmt::format(
                 "{}: interior '{}': bake_probe names '{}', and the map has {} probe nodes of that name",

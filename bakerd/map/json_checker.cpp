@@ -90,31 +90,30 @@ std::string shown(const Json& value) {
     return text;
 }
 
-Failure Checker::properties(Json& object,
-                            const std::string& where,
-                            std::initializer_list<Property> properties) const {
+CheckResult Checker::properties(Json& object,
+                                const std::string& where,
+                                std::initializer_list<Property> properties) const {
     if (!object.is_object())
-        return fmt::format("{} is not an object", where);
+        return wrong("{} is not an object", where);
     for (const Property& wanted : properties) {
         const auto found = object.find(wanted.name);
         if (found == object.end()) {
             if (wanted.required)
-                return fmt::format("{} has no {}", where, wanted.name);
+                return wrong("{} has no {}", where, wanted.name);
             continue;
         }
-        if (Failure failure = property(*found, where, wanted))
-            return failure;
+        if (CheckResult checked = property(*found, where, wanted); !checked)
+            return checked;
         write_plainly(*found, wanted.type);
     }
     return {};
 }
 
-Failure Checker::property(const Json& value, const std::string& where, const Property& wanted) const {
+CheckResult Checker::property(const Json& value, const std::string& where, const Property& wanted) const {
     if (!has_type(value, wanted.type))
-        return fmt::format(
-            "{}: {} must be {}, it is {}", where, wanted.name, name_of(wanted.type), shown(value));
+        return wrong("{}: {} must be {}, it is {}", where, wanted.name, name_of(wanted.type), shown(value));
     if (wanted.length != 0 && value.size() != wanted.length) {
-        return fmt::format(
+        return wrong(
             "{}: {} must have {} elements, it has {}", where, wanted.name, wanted.length, value.size());
     }
     if (wanted.refers_to == nullptr)
@@ -122,12 +121,11 @@ Failure Checker::property(const Json& value, const std::string& where, const Pro
     return references(value, fmt::format("{}: {}", where, wanted.name), wanted.refers_to);
 }
 
-Failure Checker::accessors_of(Json& attributes, const std::string& where) const {
+CheckResult Checker::accessors_of(Json& attributes, const std::string& where) const {
     const std::size_t count = size_of("accessors");
     for (const auto& [name, accessor] : attributes.items()) {
         if (!has_type(accessor, Type::index) || accessor.get<double>() >= static_cast<double>(count)) {
-            return fmt::format(
-                "{}: {} names accessor {}, the file has {}", where, name, shown(accessor), count);
+            return wrong("{}: {} names accessor {}, the file has {}", where, name, shown(accessor), count);
         }
         write_plainly(accessor, Type::index);
     }
@@ -139,18 +137,18 @@ std::size_t Checker::size_of(const char* array) const {
     return found != root_.end() && found->is_array() ? found->size() : 0;
 }
 
-Failure Checker::references(const Json& value, const std::string& where, const char* array) const {
+CheckResult Checker::references(const Json& value, const std::string& where, const char* array) const {
     const std::size_t size = size_of(array);
-    const auto check = [&](const Json& index) -> Failure {
+    const auto check = [&](const Json& index) -> CheckResult {
         if (index.get<double>() < static_cast<double>(size))
             return {};
-        return fmt::format("{} names {} {}, the file has {}", where, array, shown(index), size);
+        return wrong("{} names {} {}, the file has {}", where, array, shown(index), size);
     };
     if (!value.is_array())
         return check(value);
     for (const Json& index : value) {
-        if (Failure failure = check(index))
-            return failure;
+        if (CheckResult checked = check(index); !checked)
+            return checked;
     }
     return {};
 }

@@ -5,15 +5,22 @@
 
 #include <cstddef>
 #include <initializer_list>
-#include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
+#include <tl/expected.hpp>
 
 namespace drtv::map {
 
 using Json = nlohmann::json;
-using Failure = std::optional<std::string>;  // nothing: fine
+using CheckResult = tl::expected<void, std::string>;  // else a sentence
+
+template <class... Arguments>
+[[nodiscard]] tl::unexpected<std::string> wrong(fmt::format_string<Arguments...> sentence,
+                                                Arguments&&... arguments) {
+    return tl::unexpected(fmt::format(sentence, std::forward<Arguments>(arguments)...));
+}
 
 enum class Type { number, index, count, string, boolean, object, index_array, number_array };
 
@@ -80,25 +87,25 @@ class Checker {
   public:
     explicit Checker(Json& root) : root_(root) {}
 
-    [[nodiscard]] Failure properties(Json& object,
-                                     const std::string& where,
-                                     std::initializer_list<Property> properties) const;
+    [[nodiscard]] CheckResult properties(Json& object,
+                                         const std::string& where,
+                                         std::initializer_list<Property> properties) const;
 
     // Each member of `attributes` names an accessor.
-    [[nodiscard]] Failure accessors_of(Json& attributes, const std::string& where) const;
+    [[nodiscard]] CheckResult accessors_of(Json& attributes, const std::string& where) const;
 
     // Runs `check(element, "node 3")` over a top-level array.
     template <class Check>
-    [[nodiscard]] Failure each(const char* array, const char* singular, Check check) const {
+    [[nodiscard]] CheckResult each(const char* array, const char* singular, Check check) const {
         const auto found = root_.find(array);
         if (found == root_.end())
             return {};
         if (!found->is_array())
-            return fmt::format("{} must be an array", array);
+            return wrong("{} must be an array", array);
         for (std::size_t n = 0; n < found->size(); ++n) {
             const std::string where = fmt::format("{} {}", singular, n);
-            if (Failure failure = check((*found)[n], where))
-                return failure;
+            if (CheckResult checked = check((*found)[n], where); !checked)
+                return checked;
         }
         return {};
     }
@@ -109,9 +116,13 @@ class Checker {
     }
 
   private:
-    [[nodiscard]] Failure property(const Json& value, const std::string& where, const Property& wanted) const;
+    [[nodiscard]] CheckResult property(const Json& value,
+                                       const std::string& where,
+                                       const Property& wanted) const;
     [[nodiscard]] std::size_t size_of(const char* array) const;
-    [[nodiscard]] Failure references(const Json& value, const std::string& where, const char* array) const;
+    [[nodiscard]] CheckResult references(const Json& value,
+                                         const std::string& where,
+                                         const char* array) const;
 
     Json& root_;
 };

@@ -148,7 +148,7 @@ struct Object {
 };
 
 // A hand-placed probe. Its name serves `bake_probe` only.
-struct ManualProbe {
+struct ProbeNode {
     glm::dvec3 position{};  // world
     std::string name;
 };
@@ -156,7 +156,7 @@ struct ManualProbe {
 enum class VolumeKind : std::uint8_t { no_probes, interior, spacing };
 
 // A closed mesh in world space (closedness is checked by placement, which has the tools for it).
-struct Volume {
+struct VolumeNode {
     VolumeKind kind = VolumeKind::no_probes;
     std::vector<glm::dvec3> positions;
     std::vector<glm::uvec3> triangles;
@@ -193,8 +193,8 @@ struct Map {
     std::vector<Material> materials;
     std::vector<Mesh> meshes;
     std::vector<Object> objects;  // sorted by digest, so that their order does not depend on the files
-    std::vector<ManualProbe> probes;
-    std::vector<Volume> volumes;
+    std::vector<ProbeNode> probes;
+    std::vector<VolumeNode> volumes;
     std::vector<Light> lights;
     std::vector<std::string> light_groups;  // names, one of each
     std::vector<std::string> warnings;      // one sentence each

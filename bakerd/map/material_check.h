@@ -6,6 +6,6 @@
 namespace drtv::map {
 
 // Types and references only; ranges of values show when a material is imported. REQUIRES: images are checked.
-[[nodiscard]] Failure check_materials(const Checker& check);
+[[nodiscard]] CheckResult check_materials(const Checker& check);
 
 }  // namespace drtv::map

@@ -19,7 +19,7 @@ bool lies_in(double value, double low, double high) {
 }
 
 // What is there of the base texture.
-Presence presence_of(const Material& material) {
+CoverageTest presence_of(const Material& material) {
     if (material.alpha_mode == AlphaMode::blend)
         return {Coverage::alpha, 0};
     if (material.alpha_mode == AlphaMode::opaque)
@@ -107,7 +107,7 @@ class MaterialImporter {
         }
         if (material.emission == glm::vec3(0))
             return {};  // then the picture shines nowhere
-        return read_view(emission_texture_of(source), Presence{}, material.emission_texture);
+        return read_view(emission_texture_of(source), CoverageTest{}, material.emission_texture);
     }
 
     Imported read_transmission(const tinygltf::Material& source, Material& material) {
@@ -120,7 +120,7 @@ class MaterialImporter {
         material.transmission = static_cast<float>(factor);
         if (!(material.transmission > 0))
             return {};
-        return read_view(transmission_texture_of(source), Presence{}, material.transmission_texture);
+        return read_view(transmission_texture_of(source), CoverageTest{}, material.transmission_texture);
     }
 
     Imported read_diffuse_transmission(const tinygltf::Material& source, Material& material) {
@@ -156,7 +156,7 @@ class MaterialImporter {
         warn(state_.map, state_.document.at(rest));
     }
 
-    Imported read_view(const TextureUse& use, Presence presence, TextureView& view) {
+    Imported read_view(const TextureUse& use, CoverageTest presence, TextureView& view) {
         const auto read = textures_.view_of(use, presence);
         if (!read)
             return fail(read.error());

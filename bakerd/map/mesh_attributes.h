@@ -12,7 +12,7 @@
 
 namespace drtv::map {
 
-// One after the other: positions have 3 numbers a vertex, uvs 2, colours 3 or 4.
+// One after the other: positions have 3 numbers per vertex, uvs 2, colours 3 or 4.
 struct Attributes {
     std::size_t vertex_count = 0;
     Floats positions;

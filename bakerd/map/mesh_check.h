@@ -6,6 +6,6 @@
 namespace drtv::map {
 
 // Also leaves out morph targets, which no bake needs. REQUIRES: accessors are checked.
-[[nodiscard]] Failure check_meshes(const Checker& check);
+[[nodiscard]] CheckResult check_meshes(const Checker& check);
 
 }  // namespace drtv::map

@@ -58,7 +58,7 @@ Imported MeshPlacer::count(std::uint32_t mesh, const NodePurpose& purpose, std::
 
 Imported MeshPlacer::place(MeshPlace place, const NodePurpose& purpose) {
     if (purpose.spacing_m > 0) {
-        Volume volume;
+        VolumeNode volume;
         volume.kind = VolumeKind::spacing;
         volume.spacing_m = purpose.spacing_m;
         auto added = add_volume(place, std::move(volume));
@@ -67,7 +67,7 @@ Imported MeshPlacer::place(MeshPlace place, const NodePurpose& purpose) {
     }
     if (!is_volume(purpose.role))
         return add_object(std::move(place), purpose);
-    Volume volume;
+    VolumeNode volume;
     if (purpose.role == NodeRole::interior) {
         volume.kind = VolumeKind::interior;
         volume.probe_name = purpose.bake_probe;
@@ -134,7 +134,7 @@ Imported MeshPlacer::add_object(MeshPlace place, const NodePurpose& purpose) {
     return {};
 }
 
-Imported MeshPlacer::add_volume(const MeshPlace& place, Volume volume) {
+Imported MeshPlacer::add_volume(const MeshPlace& place, VolumeNode volume) {
     volume.name = place.name;
     for (const Primitive& primitive : map_.meshes[place.mesh].primitives) {
         const auto first = static_cast<std::uint32_t>(volume.positions.size());

@@ -43,7 +43,7 @@ class MeshPlacer {
     [[nodiscard]] Imported count_copied(std::uint32_t mesh, std::size_t instances);
     [[nodiscard]] std::uint32_t flattened_mesh(std::uint32_t mesh, const glm::mat4x3& world_from_object);
     [[nodiscard]] Imported add_object(MeshPlace place, const NodePurpose& purpose);
-    [[nodiscard]] Imported add_volume(const MeshPlace& place, Volume volume);
+    [[nodiscard]] Imported add_volume(const MeshPlace& place, VolumeNode volume);
 
     Map& map_;
     Shared& shared_;

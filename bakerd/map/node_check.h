@@ -7,6 +7,6 @@ namespace drtv::map {
 
 // Types and references, each by itself; how nodes hang together is node_tree_check.h's. REQUIRES: the root's
 // `extensions` is an object where it is there, accessors and meshes are checked.
-[[nodiscard]] Failure check_nodes(const Checker& check, Json& root);
+[[nodiscard]] CheckResult check_nodes(const Checker& check, Json& root);
 
 }  // namespace drtv::map

@@ -7,6 +7,6 @@ namespace drtv::map {
 
 // Each node has at most one parent, no path leads back, and a scene holds each of its roots once: then every
 // walk over children ends, and meets no node twice. REQUIRES: nodes and scenes are checked.
-[[nodiscard]] Failure check_node_tree(const Json& root);
+[[nodiscard]] CheckResult check_node_tree(const Json& root);
 
 }  // namespace drtv::map

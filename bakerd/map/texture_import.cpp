@@ -52,7 +52,8 @@ tl::expected<void, std::string> apply_texture_transform(const tinygltf::Value& e
 
 }  // namespace
 
-tl::expected<TextureView, std::string> TextureImporter::view_of(const TextureUse& use, Presence presence) {
+tl::expected<TextureView, std::string> TextureImporter::view_of(const TextureUse& use,
+                                                                CoverageTest presence) {
     if (use.index < 0)
         return TextureView{};
     const auto texture = texture_index(use.index, presence);
@@ -68,7 +69,7 @@ tl::expected<TextureView, std::string> TextureImporter::view_of(const TextureUse
     return view;
 }
 
-tl::expected<std::uint32_t, std::string> TextureImporter::texture_index(int index, Presence presence) {
+tl::expected<std::uint32_t, std::string> TextureImporter::texture_index(int index, CoverageTest presence) {
     const tinygltf::Model& model = state_.document.model;
     const tinygltf::Texture& source = at_index(model.textures, index);
     if (source.source < 0)

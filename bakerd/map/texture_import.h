@@ -14,11 +14,11 @@
 namespace drtv::map {
 
 // What is there of a texture, as the material's alpha mode says.
-struct Presence {
+struct CoverageTest {
     Coverage coverage = Coverage::whole;
     float cutoff = 0;  // of alpha; Coverage::cutoff only
 
-    auto operator<=>(const Presence&) const = default;
+    auto operator<=>(const CoverageTest&) const = default;
 };
 
 class TextureImporter {
@@ -27,7 +27,8 @@ class TextureImporter {
 
     // The texture that is named, with its transform; a view of nothing when none is. The sentence names
     // neither file nor material; the caller does.
-    [[nodiscard]] tl::expected<TextureView, std::string> view_of(const TextureUse& use, Presence presence);
+    [[nodiscard]] tl::expected<TextureView, std::string> view_of(const TextureUse& use,
+                                                                 CoverageTest presence);
 
   private:
     // A picture as materials use it: many may share one.
@@ -35,12 +36,12 @@ class TextureImporter {
         int image = 0;
         Wrap wrap_u = Wrap::repeat;
         Wrap wrap_v = Wrap::repeat;
-        Presence presence;
+        CoverageTest presence;
 
         auto operator<=>(const Use&) const = default;
     };
 
-    [[nodiscard]] tl::expected<std::uint32_t, std::string> texture_index(int index, Presence presence);
+    [[nodiscard]] tl::expected<std::uint32_t, std::string> texture_index(int index, CoverageTest presence);
     [[nodiscard]] tl::expected<Texture, std::string> decode(int image_index) const;
     [[nodiscard]] std::uint32_t keep(Texture texture);
 

@@ -27,7 +27,7 @@ Camera Camera::at(const glm::vec3& eye, const glm::vec3& look, float fov_deg, Si
     return camera;
 }
 
-Camera Camera::above(const Rectangle& world, float top_m, Size size) {
+Camera Camera::above(const trace::WorldRectangle& world, float top_m, Size size) {
     const glm::vec2 middle = (world.low + world.high) / 2.0f;
     const glm::vec2 half = (world.high - world.low) / 2.0f;
     Camera camera;

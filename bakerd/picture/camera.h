@@ -30,7 +30,7 @@ class Camera {
     // `fov_deg`: from the left side to the right, 1 to 170. REQUIRES: eye != look.
     [[nodiscard]] static Camera at(const glm::vec3& eye, const glm::vec3& look, float fov_deg, Size size);
     // Straight down from the height `top_m`; north is up.
-    [[nodiscard]] static Camera above(const Rectangle& world, float top_m, Size size);
+    [[nodiscard]] static Camera above(const trace::WorldRectangle& world, float top_m, Size size);
 
     // Through a point of the picture, in pixels from its upper left corner: a pixel's middle is at 1/2.
     [[nodiscard]] trace::Ray ray(glm::vec2 pixel) const;

@@ -5,9 +5,10 @@
 #include "bakerd/picture/hours.h"
 #include "bakerd/picture/pick.h"
 #include "bakerd/picture/render_request.h"
-#include "bakerd/picture/setting.h"
+#include "bakerd/picture/shot.h"
 #include "bakerd/picture/view_arguments.h"
 
+#include "format/cli/report.h"
 #include "format/kit/files.h"
 #include "format/kit/number_list.h"
 #include "format/kit/progress_bar.h"
@@ -28,7 +29,7 @@ class Rendering {
   public:
     explicit Rendering(const RenderRequest& request) : request_(request) {}
 
-    Expected<void> run() {
+    cli::Result<void> run() {
         auto hours = read_hours(request_);
         if (!hours)
             return tl::unexpected(hours.error());
@@ -37,23 +38,23 @@ class Rendering {
         if (auto done = read_exposure(); !done)
             return done;
         if (!request_.out.empty()) {
-            if (std::string problem = kit::png_target_problem(request_.out); !problem.empty())
-                return failed(kit::exit_unreadable, std::move(problem));
+            if (auto target = kit::check_png_target(request_.out); !target)
+                return target;
         }
-        auto setting = Setting::open(request_);
-        if (!setting)
-            return tl::unexpected(setting.error());
-        setting_ = std::move(*setting);
+        auto shot = Shot::open(request_);
+        if (!shot)
+            return tl::unexpected(shot.error());
+        shot_ = std::move(*shot);
         // Groups and lamps are the same at all hours.
-        kit::warn_of_lost_light(setting_->sectors(), *hours_.front().light, "in sight");
+        kit::warn_of_lost_light(shot_->sectors(), *hours_.front().light, "in sight");
         if (auto done = check_size(); !done)
             return done;
         if (auto done = print_picks(); !done)
             return done;
         if (request_.out.empty() && !request_.compare)
             return {};
-        if (!sees_anything(setting_->camera(), setting_->scenery().scene()))
-            kit::complain("warning: nothing of the map is in sight");
+        if (!sees_anything(shot_->camera(), shot_->scenery().scene()))
+            cli::warn("nothing of the map is in sight");
         if (request_.exposure == "noon")
             ev_ = ev_at_noon();
         return request_.compare ? compare() : write(sheet());
@@ -61,19 +62,19 @@ class Rendering {
 
   private:
     [[nodiscard]] Moment moment_of(const Hour& hour) const {
-        return {setting_->sectors(), *hour.light, setting_->choice(), setting_->window()};
+        return {shot_->sectors(), *hour.light, shot_->choice(), shot_->window()};
     }
 
     // Where it is a number.
-    Expected<void> read_exposure() {
+    cli::Result<void> read_exposure() {
         const std::string& text = request_.exposure;
         if (text == "noon" || text == "auto")
             return {};
         constexpr double most = 128;
         const auto stops = kit::number_list(text, 1);
         if (!stops || std::abs(stops->front()) > most)
-            return failed(
-                kit::exit_usage,
+            return cli::fail(
+                cli::exit_usage,
                 fmt::format("render: --exposure takes noon, auto, or stops from -{} to {}, not \"{}\"",
                             most,
                             most,
@@ -92,20 +93,20 @@ class Rendering {
         return brightness ? ev_for(*brightness) : 0;
     }
     [[nodiscard]] std::optional<double> brightness_of(const Hour& hour) const {
-        const Show show = setting_->show();
+        const Show show = shot_->show();
         const Moment moment = moment_of(hour);
         const Show exposed = is_surface_light(show) ? show : Show::all;
-        const Painter painter(setting_->scenery(), moment, setting_->camera(), exposed);
-        return brightness_log2(painter, setting_->camera(), setting_->scenery().scene());
+        const Painter painter(shot_->scenery(), moment, shot_->camera(), exposed);
+        return brightness_log2(painter, shot_->camera(), shot_->scenery().scene());
     }
 
-    Expected<void> print_picks() {
+    cli::Result<void> print_picks() {
         if (request_.picks.empty())
             return {};
         for (const Hour& hour : hours_) {
             const Moment moment = moment_of(hour);
             for (const std::string& text : request_.picks) {
-                auto line = picked(*setting_, moment, hour.time, text);
+                auto line = picked(*shot_, moment, hour.time, text);
                 if (!line)
                     return tl::unexpected(line.error());
                 std::puts(line->c_str());
@@ -119,14 +120,14 @@ class Rendering {
         if (!ev_ || shown_evs_.empty())
             shown_evs_.push_back(ev);
         const Moment moment = moment_of(hour);
-        Painter painter(setting_->scenery(), moment, setting_->camera(), setting_->show());
+        Painter painter(shot_->scenery(), moment, shot_->camera(), shot_->show());
         std::optional<TexelAge> age;
-        if (setting_->show() == Show::age) {
-            const Camera& camera = setting_->camera();
-            age.emplace(setting_->sectors(), *hour.light, setting_->choice(), camera.eye(), camera.forward());
+        if (shot_->show() == Show::age) {
+            const Camera& camera = shot_->camera();
+            age.emplace(shot_->sectors(), *hour.light, shot_->choice(), camera.eye(), camera.forward());
             painter.use_age(*age);
         }
-        return draw(painter, setting_->camera().size(), exposure_of(ev), [&](std::size_t rows) {
+        return draw(painter, shot_->camera().size(), exposure_of(ev), [&](std::size_t rows) {
             bar.show(done + rows);
         });
     }
@@ -136,26 +137,26 @@ class Rendering {
     }
 
     // Of all pictures side by side.
-    Expected<void> check_size() const {
-        const Size size = setting_->camera().size();
+    cli::Result<void> check_size() const {
+        const Size size = shot_->camera().size();
         const std::size_t columns = request_.compare ? 3 : sheet_columns();
         const std::size_t rows = (hours_.size() + columns - 1) / columns;
         const std::size_t pixels = columns * rows * size.width * size.height;
         if (pixels <= max_pixels)
             return {};
-        return failed(
-            kit::exit_usage,
+        return cli::fail(
+            cli::exit_usage,
             fmt::format("render: {} x {} pictures of {} would have {} million pixels, over 64 million",
                         columns,
                         rows,
                         request_.size,
-                        pixels >> 20));
+                        pixels / 1'000'000));
     }
 
     // Pictures side by side, as near to a square as they go.
     [[nodiscard]] kit::Image sheet() {
-        const Size size = setting_->camera().size();
-        const std::size_t steps = draw_steps(setting_->show(), size);
+        const Size size = shot_->camera().size();
+        const std::size_t steps = draw_steps(shot_->show(), size);
         kit::ProgressBar bar("rows", steps * hours_.size());
         if (request_.times.empty())
             return draw_hour(hours_.front(), bar, 0);
@@ -173,23 +174,19 @@ class Rendering {
         return sheet;
     }
 
-    Expected<void> write(const kit::Image& image) const {
+    cli::Result<void> write(const kit::Image& image) const {
         std::vector<kit::PngText> texts;
         if (request_.top && hours_.size() == 1 && !request_.compare) {
-            const Rectangle& world = setting_->world();
+            const trace::WorldRectangle& world = shot_->world();
             texts.push_back(
                 {kit::world_rectangle_key,
                  fmt::format("{},{},{},{}", world.low.x, world.low.y, world.high.x, world.high.y)});
         }
-        const std::vector<std::uint8_t> png = kit::encode_png(image, texts);
-        if (png.empty())
-            return failed(
-                kit::exit_unreadable,
-                fmt::format(
-                    "{}: memory is too short for {} x {} pixels", request_.out, image.width, image.height));
-        const std::string error = kit::write_png_file(request_.out, png);
-        if (!error.empty())
-            return failed(kit::exit_unreadable, error);
+        const auto written = kit::encode_png(image, texts).and_then([&](const kit::FileBytes& png) {
+            return kit::write_png_file(request_.out, png);
+        });
+        if (!written)
+            return written;
         fmt::print("{}: {} x {} pixels{}\n", request_.out, image.width, image.height, told());
         return {};
     }
@@ -197,24 +194,23 @@ class Rendering {
     // What was chosen, in the words of the command line.
     [[nodiscard]] std::string told() const {
         std::string text;
-        if (setting_->view())
-            text += ", --camera " + place_text(setting_->view()->eye) + " --look " +
-                    place_text(setting_->view()->look);
-        if (is_light(setting_->show()))
+        if (shot_->view())
+            text +=
+                ", --camera " + place_text(shot_->view()->eye) + " --look " + place_text(shot_->view()->look);
+        if (is_light(shot_->show()))
             text += fmt::format(", --exposure {}", fmt::join(shown_evs_, ", "));
         return text;
     }
 
-    Expected<void> compare() {
+    cli::Result<void> compare() {
         const Hour& hour = hours_.front();
         if (!ev_)
             ev_ = ev_of(hour);
         shown_evs_ = {*ev_};
         const Moment moment = moment_of(hour);
-        const Comparison comparison =
-            compare_with_paths(*setting_, moment, {request_.paths}, exposure_of(*ev_));
+        const Comparison comparison = compare_with_paths(*shot_, moment, {request_.paths}, exposure_of(*ev_));
         std::fputs(comparison.table.c_str(), stdout);
-        return request_.out.empty() ? Expected<void>() : write(comparison.picture);
+        return request_.out.empty() ? cli::Result<void>() : write(comparison.picture);
     }
 
     static constexpr std::size_t caption_margin = 8;
@@ -222,27 +218,20 @@ class Rendering {
     const RenderRequest& request_;
     std::vector<Hour> hours_;
     Hour noon_;
-    std::unique_ptr<const Setting> setting_;
+    std::unique_ptr<const Shot> shot_;
     std::optional<float> ev_;       // nothing: each picture's own
     std::vector<float> shown_evs_;  // of all pictures, or of each
 };
 
 }  // namespace
 
-int run_render(const RenderRequest& request) {
-    if (request.out.empty() && request.picks.empty() && !request.compare) {
-        kit::complain("render: --out FILE.png says where the picture goes");
-        return kit::exit_usage;
-    }
+cli::Result<cli::ExitCode> run_render(const RenderRequest& request) {
+    if (request.out.empty() && request.picks.empty() && !request.compare)
+        return cli::fail(cli::exit_usage, "render: --out FILE.png says where the picture goes");
     const std::size_t threads = request.threads > 0 ? static_cast<std::size_t>(request.threads)
                                                     : std::max(1u, std::thread::hardware_concurrency());
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const auto done = Rendering(request).run();
-    if (done)
-        return kit::exit_valid;
-    if (!done.error().sentence.empty())
-        kit::complain(done.error().sentence);
-    return done.error().code;
+    return Rendering(request).run().map([] { return cli::exit_done; });
 }
 
 }  // namespace drtv::picture

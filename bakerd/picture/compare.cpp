@@ -25,12 +25,12 @@ constexpr std::size_t place_step = 4;
 
 class Comparing {
   public:
-    Comparing(const Setting& setting, const Moment& moment, const CompareSettings& settings, float exposure)
-        : setting_(setting),
+    Comparing(const Shot& shot, const Moment& moment, const CompareSettings& settings, float exposure)
+        : shot_(shot),
           moment_(moment),
           exposure_(exposure),
-          size_(setting.camera().size()),
-          path_light_(setting.scenery(), moment, setting.bake()),
+          size_(shot.camera().size()),
+          path_light_(shot.scenery(), moment, shot.bake()),
           half_(std::max(settings.paths / 2, 1u), path_light_.dimensions()),
           true_probes_(moment, path_light_, shown()),
           picture_(3 * size_.width, size_.height),
@@ -67,22 +67,20 @@ class Comparing {
     }
 
     [[nodiscard]] trace::Ray ray_of(std::size_t x, std::size_t y) const {
-        return setting_.camera().ray(glm::vec2(x, y) + 0.5f);
+        return shot_.camera().ray(glm::vec2(x, y) + 0.5f);
     }
     [[nodiscard]] std::optional<SurfacePoint> point_at(std::size_t x, std::size_t y) const {
-        return surface_on(setting_.scenery().scene(), setting_.camera(), ray_of(x, y));
+        return surface_on(shot_.scenery().scene(), shot_.camera(), ray_of(x, y));
     }
 
     // The part that is compared; all of the ambient light in a picture of the whole scene.
-    [[nodiscard]] Show shown() const {
-        return setting_.show() == Show::all ? Show::ambient : setting_.show();
-    }
+    [[nodiscard]] Show shown() const { return shot_.show() == Show::all ? Show::ambient : shot_.show(); }
     [[nodiscard]] Guesses<glm::vec3> shown_of(const Truth& truth) const {
         return {picture::part_of(truth[0], shown()), picture::part_of(truth[1], shown())};
     }
     // Whether the light that comes through a surface from behind counts.
     [[nodiscard]] bool shows_back(const SurfacePoint& point) const {
-        return setting_.show() == Show::all && point.surface.transmitted != glm::vec3(0);
+        return shot_.show() == Show::all && point.surface.transmitted != glm::vec3(0);
     }
 
     void ask_for_probes(std::size_t x, std::size_t y) {
@@ -107,8 +105,8 @@ class Comparing {
         const auto point = point_at(x, y);
         std::array<glm::vec3, 3> light{};
         if (!point) {
-            if (setting_.show() == Show::all)
-                light.fill(sky_seen(setting_.scenery(), moment_, ray_of(x, y), true));
+            if (shot_.show() == Show::all)
+                light.fill(sky_seen(shot_.scenery(), moment_, ray_of(x, y), true));
         } else if (!point->surface.absorbs) {
             light = lights_of(*point, x, y, figures);
         }
@@ -133,9 +131,9 @@ class Comparing {
             note_place(figures, *start, normal, truth, by_probes, {x, y, 3});
         std::array<glm::vec3, 3> light = {
             picture::part_of(ambient, shown()), mean_of(shown_of(truth)), mean_of(by_probes)};
-        if (setting_.show() != Show::all)
+        if (shot_.show() != Show::all)
             return light;
-        const glm::vec3 direct = direct_light(setting_.scenery(), moment_, point);
+        const glm::vec3 direct = direct_light(shot_.scenery(), moment_, point);
         for (glm::vec3& colour : light)
             colour = colour * point.surface.albedo + direct;
         if (shows_back(point))
@@ -152,7 +150,7 @@ class Comparing {
                   std::size_t y) const {
         const glm::vec3 normal = -point.hit.normal;
         const glm::vec3& through = point.surface.transmitted;
-        const auto start = bake::beyond_surface(setting_.scenery().scene(), point.ray, point.hit);
+        const auto start = bake::beyond_surface(shot_.scenery().scene(), point.ray, point.hit);
         if (!start)
             return;
         light[0] += through * moment_.ambient_colour(point.at, normal);
@@ -190,7 +188,7 @@ class Comparing {
         figures.shading.add(by_place, shown_of(truth));
     }
 
-    const Setting& setting_;
+    const Shot& shot_;
     const Moment& moment_;
     const float exposure_;
     const Size size_;
@@ -203,11 +201,11 @@ class Comparing {
 
 }  // namespace
 
-Comparison compare_with_paths(const Setting& setting,
+Comparison compare_with_paths(const Shot& shot,
                               const Moment& moment,
                               const CompareSettings& settings,
                               float exposure) {
-    return Comparing(setting, moment, settings, exposure).run();
+    return Comparing(shot, moment, settings, exposure).run();
 }
 
 }  // namespace drtv::picture

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bakerd/picture/moment.h"
-#include "bakerd/picture/setting.h"
+#include "bakerd/picture/shot.h"
 #include "format/kit/png.h"
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Comparison {
     std::string table;  // lines of text
 };
 
-[[nodiscard]] Comparison compare_with_paths(const Setting& setting,
+[[nodiscard]] Comparison compare_with_paths(const Shot& shot,
                                             const Moment& moment,
                                             const CompareSettings& settings,
                                             float exposure);

@@ -62,8 +62,8 @@ void CompareFigures::add(const CompareFigures& other) {
 }
 
 std::string table_of(const CompareFigures& figures, Show shown) {
-    constexpr double least_mean = 1e-30;
-    const double percent = 100 / std::max(figures.shown.truth / count_of(figures.shown), least_mean);
+    constexpr double min_mean = 1e-30;
+    const double percent = 100 / std::max(figures.shown.truth / count_of(figures.shown), min_mean);
     std::string text = "ambient light of the surfaces in sight, beside path tracing\n";
     text += fmt::format("{:<16}{:>9}{:>9}{:>9}\n", "part", "share %", "bias %", "rms %");
     for (std::size_t n = 0; shown == Show::ambient && n < compared_parts.size(); ++n)

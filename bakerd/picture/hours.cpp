@@ -9,22 +9,21 @@
 namespace drtv::picture {
 namespace {
 
-Expected<Hour> read_hour(const kit::LightRequest& request) {
+cli::Result<Hour> read_hour(const kit::LightRequest& request) {
     Hour hour;
     hour.time = request.time.value_or("");
-    // What is wrong has been told.
-    if (const int code = kit::read_light(request, "render", *hour.light); code != kit::exit_valid)
-        return failed(static_cast<kit::ExitCode>(code), {});
+    if (auto read = kit::read_light(request, "render", *hour.light); !read)
+        return tl::unexpected(read.error());
     return hour;
 }
 
 // Gives the times of a sheet.
-Expected<std::vector<std::optional<std::string>>> read_times(const RenderRequest& request) {
+cli::Result<std::vector<std::optional<std::string>>> read_times(const RenderRequest& request) {
     for (const std::string& time : request.times) {
         double hours = 0;
         if (!parse_time(time, hours))
-            return failed(
-                kit::exit_usage,
+            return cli::fail(
+                cli::exit_usage,
                 fmt::format("render: --times takes times of a day such as 06:00,14:00, not \"{}\"", time));
     }
     return std::vector<std::optional<std::string>>(request.times.begin(), request.times.end());
@@ -37,7 +36,7 @@ bool is_dark(const kit::LightRequest& light) {
 
 }  // namespace
 
-Expected<Hours> read_hours(const RenderRequest& request) {
+cli::Result<Hours> read_hours(const RenderRequest& request) {
     kit::LightRequest light = request.light;
     if (is_dark(light))
         light.time = "12:00";

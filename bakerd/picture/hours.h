@@ -1,8 +1,8 @@
 // The light of each picture of a run.
 #pragma once
 
-#include "bakerd/picture/failure.h"
 #include "bakerd/picture/render_request.h"
+#include "format/cli/failure.h"
 #include "format/kit/light_request.h"
 
 #include <memory>
@@ -22,6 +22,6 @@ struct Hours {
 };
 
 // Without any light it is noon. A failure without a sentence has been told.
-[[nodiscard]] Expected<Hours> read_hours(const RenderRequest& request);
+[[nodiscard]] cli::Result<Hours> read_hours(const RenderRequest& request);
 
 }  // namespace drtv::picture

@@ -114,7 +114,7 @@ void PathWalk::add_lights(PathParts& parts, const State& path, const SurfacePoin
 glm::vec3 PathWalk::of_set(std::size_t set, const State& path, const SurfacePoint& point) const {
     const bake::NextEvent& event = events_[set];
     glm::vec3 sum(0);
-    for (const bake::Sun* sun : event.suns())
+    for (const bake::StaticSun* sun : event.suns())
         sum += sent(event.towards(*sun, point.at), point);
     if (!event.has_drawn_lights())
         return sum;

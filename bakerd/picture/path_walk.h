@@ -66,9 +66,9 @@ class PathWalk {
     void direct(const Use& use) const {
         for (std::size_t set = 0; set < events_.size(); ++set) {
             const bake::NextEvent& event = events_[set];
-            for (const bake::Sun* sun : event.suns())
+            for (const bake::StaticSun* sun : event.suns())
                 use_seen(event.towards(*sun, place_), scene_.factors[set], use);
-            for (const bake::PointLight* lamp : event.points())
+            for (const bake::StaticPointLight* lamp : event.points())
                 use_seen(event.towards(*lamp, place_), scene_.factors[set], use);
         }
     }

@@ -12,11 +12,8 @@
 namespace drtv::picture {
 namespace {
 
-void write_surface(kit::JsonWriter& json,
-                   const Setting& setting,
-                   const Moment& moment,
-                   const SurfacePoint& point) {
-    const trace::Scene& scene = setting.scenery().scene();
+void write_surface(kit::JsonWriter& json, const Shot& shot, const Moment& moment, const SurfacePoint& point) {
+    const trace::Scene& scene = shot.scenery().scene();
     const Ambient ambient = moment.ambient(point.at, point.hit.normal);
     json.member("object", scene.object_of(point.hit).name);
     json.key("at").array(as_float3(point.at));
@@ -28,36 +25,36 @@ void write_surface(kit::JsonWriter& json,
     json.member("interior_share", ambient.interior.share);
     json.key("ambient").array(ambient.colour);
     kit::append_parts(json, ambient.parts);
-    json.key("direct").array(as_float3(direct_light(setting.scenery(), moment, point)));
+    json.key("direct").array(as_float3(direct_light(shot.scenery(), moment, point)));
 }
 
 }  // namespace
 
-Expected<std::string> picked(const Setting& setting,
-                             const Moment& moment,
-                             const std::string& time,
-                             const std::string& pixel) {
+cli::Result<std::string> picked(const Shot& shot,
+                                const Moment& moment,
+                                const std::string& time,
+                                const std::string& pixel) {
     const trace::FloatMode float_mode;
-    const Camera& camera = setting.camera();
+    const Camera& camera = shot.camera();
     const Size size = camera.size();
     const auto numbers = kit::number_list(pixel, 2);
     const auto is_within = [](double n, std::size_t pixels) {
         return n >= 0 && n < static_cast<double>(pixels) && n == std::floor(n);
     };
     if (!numbers || !is_within((*numbers)[0], size.width) || !is_within((*numbers)[1], size.height))
-        return failed(kit::exit_usage,
-                      fmt::format("render: --pick takes x,y of a pixel, up to {},{}, not \"{}\"",
-                                  size.width - 1,
-                                  size.height - 1,
-                                  pixel));
+        return cli::fail(cli::exit_usage,
+                         fmt::format("render: --pick takes x,y of a pixel, up to {},{}, not \"{}\"",
+                                     size.width - 1,
+                                     size.height - 1,
+                                     pixel));
     const glm::vec2 middle = glm::vec2((*numbers)[0], (*numbers)[1]) + 0.5f;
-    const auto point = surface_on(setting.scenery().scene(), camera, camera.ray(middle));
+    const auto point = surface_on(shot.scenery().scene(), camera, camera.ray(middle));
     kit::JsonWriter json;
     json.begin_object().key("pixel").array(*numbers);
     if (!time.empty())
         json.member("time", time);
     if (point)
-        write_surface(json, setting, moment, *point);
+        write_surface(json, shot, moment, *point);
     return json.end_object().text();
 }
 

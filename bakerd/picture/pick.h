@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bakerd/picture/moment.h"
-#include "bakerd/picture/setting.h"
+#include "bakerd/picture/shot.h"
 
 #include <string>
 
@@ -10,9 +10,9 @@ namespace drtv::picture {
 
 // As a JSON object, with the time where it is not empty. `pixel`: x,y from the upper left corner, from 0.
 // Fails where the picture has no such pixel.
-[[nodiscard]] Expected<std::string> picked(const Setting& setting,
-                                           const Moment& moment,
-                                           const std::string& time,
-                                           const std::string& pixel);
+[[nodiscard]] cli::Result<std::string> picked(const Shot& shot,
+                                              const Moment& moment,
+                                              const std::string& time,
+                                              const std::string& pixel);
 
 }  // namespace drtv::picture

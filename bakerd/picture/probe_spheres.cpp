@@ -11,7 +11,7 @@ namespace drtv::picture {
 namespace {
 
 constexpr float radius_m = 0.3f;
-constexpr float least_radius_pixels = 2;
+constexpr float min_radius_pixels = 2;
 constexpr float farthest_m = 300;
 
 }  // namespace
@@ -36,7 +36,7 @@ void ProbeSpheres::add(const LoadedSector& sector,
     if (!shown || (shown->distance_m > farthest_m && !camera.is_parallel()))
         return;
     const float pixel_m = camera.pixel_m(shown->distance_m);
-    sphere.radius_m = std::max(radius_m, least_radius_pixels * pixel_m);
+    sphere.radius_m = std::max(radius_m, min_radius_pixels * pixel_m);
     sphere.colours = clamped(relight(sector.view, probe, moment.light()));
     constexpr float spare = 1.2f;  // near by, its outline is wider than its middle
     const float reach = spare * camera.drawn_out(sphere.centre) * sphere.radius_m / pixel_m + 1;

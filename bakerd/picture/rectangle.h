@@ -1,22 +1,16 @@
 // Parts of the world, from above.
 #pragma once
 
-#include <drtv/sector_set.h>
+#include "bakerd/trace/scene.h"
 
-#include <glm/vec2.hpp>
+#include <drtv/sector_set.h>
 
 namespace drtv::picture {
 
-// Of the world, metres; x east, y north.
-struct Rectangle {
-    glm::vec2 low{};
-    glm::vec2 high{};
-};
+[[nodiscard]] bool overlap(const trace::WorldRectangle& a, const trace::WorldRectangle& b);
 
-[[nodiscard]] bool overlap(const Rectangle& a, const Rectangle& b);
-
-[[nodiscard]] Rectangle square_of(const LoadedSector& sector);
+[[nodiscard]] trace::WorldRectangle square_of(const LoadedSector& sector);
 // Of all sectors of a set.
-[[nodiscard]] Rectangle extent_of(const SectorSet& set);
+[[nodiscard]] trace::WorldRectangle extent_of(const SectorSet& set);
 
 }  // namespace drtv::picture

@@ -1,8 +1,8 @@
 #include "bakerd/picture/render_request.h"
 #include "bakerd/picture/show.h"
 
+#include "format/cli/option_checks.h"
 #include "format/kit/light_options.h"
-#include "format/kit/option_checks.h"
 
 #include <CLI/CLI.hpp>
 
@@ -27,7 +27,7 @@ void add_view(CLI::App& command, RenderRequest& request) {
     look->needs(camera);
     CLI::Option* fov =
         command.add_option("--fov", request.fov_deg, "Degrees from the left side to the right")
-            ->check(kit::number_between(1, 170))
+            ->check(cli::number_between(1, 170))
             ->capture_default_str();
     CLI::Option* top = command.add_flag(
         "--top", request.top, "The map from above; the PNG says of which part of the world it is");
@@ -41,20 +41,20 @@ void add_view(CLI::App& command, RenderRequest& request) {
 }
 
 void add_picture(CLI::App& command, RenderRequest& request) {
-    command.add_option("--show", request.show, "What is shown: " + kit::joined(names_of_shows()))
-        ->check(kit::one_of(names_of_shows()))
+    command.add_option("--show", request.show, "What is shown: " + cli::joined(names_of_shows()))
+        ->check(cli::one_of(names_of_shows()))
         ->type_name("WHAT")
         ->capture_default_str();
     command
         .add_option(
             "--by", request.by, "Which probes: nearest, trilinear, volume; from above trilinear, else volume")
-        ->check(kit::one_of({"nearest", "trilinear", "volume"}));
+        ->check(cli::one_of({"nearest", "trilinear", "volume"}));
     command
         .add_option(
             "--encoding",
             request.encoding,
             "Of the volume's texels: rgba8, rgba8-sqrt, rgba16f; rgba16f, but to show what is clipped")
-        ->check(kit::one_of({"rgba8", "rgba8-sqrt", "rgba16f"}));
+        ->check(cli::one_of({"rgba8", "rgba8-sqrt", "rgba16f"}));
     command.add_flag_callback(
         "--no-interiors", [&request] { request.interiors = false; }, "Places inside are lit as outside");
     command
@@ -69,7 +69,7 @@ void add_picture(CLI::App& command, RenderRequest& request) {
     CLI::Option* compare = command.add_flag(
         "--compare", request.compare, "Beside path tracing, with errors by part; takes minutes");
     command.add_option("--paths", request.paths, "Of the path tracer, a pixel")
-        ->check(kit::whole_number(16, 65536))
+        ->check(cli::whole_number(16, 65536))
         ->needs(compare)
         ->capture_default_str();
 }
@@ -77,11 +77,8 @@ void add_picture(CLI::App& command, RenderRequest& request) {
 }  // namespace
 
 void add_render(CLI::App& command, RenderRequest& request) {
-    command.footer(
-        "Without any light it is noon; what is not said of light is dark.\n"
-        "Exit status: 0 done, 1 wrong usage, 2 a file cannot be read or written, 3 a file is invalid or does "
-        "not "
-        "fit");
+    command.footer("Without any light it is noon; what is not said of light is dark.\n\n" +
+                   cli::exit_code_help("bakerd"));
     command.add_option("DIR", request.folder, "A folder of sector files, or one; before --map")->required();
     command.add_option("--map", request.maps, "glTF files that they were baked of, or folders of these")
         ->required()
@@ -100,7 +97,7 @@ void add_render(CLI::App& command, RenderRequest& request) {
         ->excludes(command.get_option("--compare"))
         ->type_name("HH:MM,...");
     command.add_option("--threads", request.threads, "0: all")
-        ->check(CLI::Range(0, 1024))
+        ->check(cli::whole_number(0, 1024))
         ->capture_default_str();
 }
 

@@ -1,6 +1,7 @@
 // `bakerd render` as its command line says it.
 #pragma once
 
+#include "format/cli/failure.h"
 #include "format/kit/light_request.h"
 
 #include <optional>
@@ -38,7 +39,6 @@ struct RenderRequest {
 // The options of the command.
 void add_render(CLI::App& command, RenderRequest& request);
 
-// Gives the exit code (kit::ExitCode); complaints go to stderr.
-[[nodiscard]] int run_render(const RenderRequest& request);
+[[nodiscard]] cli::Result<cli::ExitCode> run_render(const RenderRequest& request);
 
 }  // namespace drtv::picture

@@ -15,11 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Expected<std::vector<fs::path>> files_of(const std::string& argument) {
+cli::Result<std::vector<fs::path>> files_of(const std::string& argument) {
     std::error_code code;
     const fs::path path = fs::weakly_canonical(fs::absolute(argument, code), code);
     if (!fs::exists(path, code))
-        return failed(kit::exit_unreadable, fmt::format("the map {} does not exist", argument));
+        return cli::fail(cli::exit_unreadable, fmt::format("the map {} does not exist", argument));
     if (!fs::is_directory(path, code))
         return std::vector<fs::path>{path};
     std::vector<fs::path> files;
@@ -29,11 +29,11 @@ Expected<std::vector<fs::path>> files_of(const std::string& argument) {
             files.push_back(entry.path());
     }
     if (code)
-        return failed(kit::exit_unreadable,
-                      fmt::format("cannot read the folder {}: {}", argument, code.message()));
+        return cli::fail(cli::exit_unreadable,
+                         fmt::format("cannot read the folder {}: {}", argument, code.message()));
     if (files.empty())
-        return failed(kit::exit_unreadable,
-                      fmt::format("the folder {} holds no .glb or .gltf file", argument));
+        return cli::fail(cli::exit_unreadable,
+                         fmt::format("the folder {} holds no .glb or .gltf file", argument));
     return files;
 }
 
@@ -73,7 +73,7 @@ std::size_t triangles_near(const map::Map& map, glm::vec2 place) {
 
 }  // namespace
 
-Expected<std::shared_ptr<const map::Map>> read_map(std::span<const std::string> arguments) {
+cli::Result<std::shared_ptr<const map::Map>> read_map(std::span<const std::string> arguments) {
     std::vector<fs::path> files;
     for (const std::string& argument : arguments) {
         auto found = files_of(argument);
@@ -89,7 +89,7 @@ Expected<std::shared_ptr<const map::Map>> read_map(std::span<const std::string> 
         roots.push_back(file.lexically_relative(folder).generic_string());
     auto map = map::import_map(roots, map::folder_source(folder.string()));
     if (!map)
-        return failed(kit::exit_invalid, map.error());
+        return cli::fail(cli::exit_invalid, map.error());
     return std::make_shared<const map::Map>(std::move(*map));
 }
 
@@ -102,18 +102,19 @@ map::Bounds bounds_of(const map::Map& map) {
     return bounds;
 }
 
-Expected<std::unique_ptr<const Scenery>> Scenery::build(std::shared_ptr<const map::Map> map,
-                                                        glm::vec2 around) {
+cli::Result<std::unique_ptr<const Scenery>> Scenery::build(std::shared_ptr<const map::Map> map,
+                                                           glm::vec2 around) {
     const std::size_t triangles = triangles_near(*map, around);
     if (triangles > max_triangles)
-        return failed(kit::exit_invalid,
-                      fmt::format("the map has {} million triangles in sight, over the limit of {} million; "
-                                  "name fewer of its files",
-                                  triangles / 1'000'000,
-                                  max_triangles / 1'000'000));
+        return cli::fail(
+            cli::exit_invalid,
+            fmt::format("the map has {} million triangles in sight, over the limit of {} million; "
+                        "name fewer of its files",
+                        triangles / 1'000'000,
+                        max_triangles / 1'000'000));
     auto device = trace::Device::open();
     if (!device)
-        return failed(kit::exit_unreadable, device.error());
+        return cli::fail(cli::exit_unreadable, device.error());
     trace::MapGeometry geometry(*device, map);
     std::unique_ptr<Scenery> scenery(new Scenery(map));
     scenery->scene_ = trace::Scene::build(geometry, {around, around}, sight_m);

@@ -4,9 +4,9 @@
 #include "bakerd/bake/lights.h"
 #include "bakerd/map/map.h"
 #include "bakerd/picture/camera.h"
-#include "bakerd/picture/failure.h"
 #include "bakerd/trace/device.h"
 #include "bakerd/trace/scene.h"
+#include "format/cli/failure.h"
 
 #include <memory>
 #include <span>
@@ -18,7 +18,7 @@ namespace drtv::picture {
 inline constexpr std::size_t max_triangles = 64'000'000;
 
 // Reads glTF files, and folders of them, as one map.
-[[nodiscard]] Expected<std::shared_ptr<const map::Map>> read_map(std::span<const std::string> arguments);
+[[nodiscard]] cli::Result<std::shared_ptr<const map::Map>> read_map(std::span<const std::string> arguments);
 
 // Of all objects; empty where there is none.
 [[nodiscard]] map::Bounds bounds_of(const map::Map& map);
@@ -27,8 +27,8 @@ class Scenery {
   public:
     // Objects within sight of the place. Fails where they are over max_triangles: of small ones all instances
     // of a mesh count once.
-    [[nodiscard]] static Expected<std::unique_ptr<const Scenery>> build(std::shared_ptr<const map::Map> map,
-                                                                        glm::vec2 around);
+    [[nodiscard]] static cli::Result<std::unique_ptr<const Scenery>> build(
+        std::shared_ptr<const map::Map> map, glm::vec2 around);
 
     [[nodiscard]] const trace::Scene& scene() const { return *scene_; }
     [[nodiscard]] const map::Map& map() const { return scene_->map(); }

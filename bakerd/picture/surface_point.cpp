@@ -28,7 +28,7 @@ std::optional<SurfacePoint> surface_on(const trace::Scene& scene,
 
 Incidence incidence(const PointLight& lamp, const glm::vec3& at) {
     const glm::vec3 place(lamp.position[0], lamp.position[1], lamp.position[2]);
-    const bake::PointLight light{.position = place, .intensity = as_vec(lamp.intensity)};
+    const bake::StaticPointLight light{.position = place, .intensity = as_vec(lamp.intensity)};
     const glm::vec3 way = place - at;
     const float distance_m = glm::length(way);
     if (!(distance_m > 0))

@@ -16,25 +16,25 @@ namespace {
 
 constexpr std::size_t max_side = 16384;  // pixels
 
-constexpr float least_look_m = 0.001f;
-constexpr double least_side_m = 1;
+constexpr float min_look_m = 0.001f;
+constexpr double min_side_m = 1;
 
 bool are_in_world(const std::vector<double>& metres) {
     constexpr double farthest_m = 2e6;
     return std::ranges::all_of(metres, [](double n) { return std::abs(n) <= farthest_m; });
 }
 
-Expected<glm::vec3> read_place(const std::string& text, const char* option) {
+cli::Result<glm::vec3> read_place(const std::string& text, const char* option) {
     const auto numbers = kit::number_list(text, 3);
     if (!numbers || !are_in_world(*numbers))
-        return failed(kit::exit_usage,
-                      fmt::format("render: {} takes x,y,z in metres, not \"{}\"", option, text));
+        return cli::fail(cli::exit_usage,
+                         fmt::format("render: {} takes x,y,z in metres, not \"{}\"", option, text));
     return glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
 
 }  // namespace
 
-Expected<Size> read_size(const std::string& text) {
+cli::Result<Size> read_size(const std::string& text) {
     Size size;
     const char* const end = text.data() + text.size();
     const auto width = std::from_chars(text.data(), end, size.width);
@@ -43,8 +43,8 @@ Expected<Size> read_size(const std::string& text) {
     const bool is_size = has_x && height.ec == std::errc() && height.ptr == end;
     if (!is_size || size.width < 1 || size.height < 1 || size.width > max_side || size.height > max_side ||
         size.width * size.height > max_pixels)
-        return failed(
-            kit::exit_usage,
+        return cli::fail(
+            cli::exit_usage,
             fmt::format("render: --size takes WIDTHxHEIGHT, each 1 to {}, together at most 64 million "
                         "pixels, not \"{}\"",
                         max_side,
@@ -52,7 +52,7 @@ Expected<Size> read_size(const std::string& text) {
     return size;
 }
 
-Expected<std::optional<View>> read_view(const RenderRequest& request) {
+cli::Result<std::optional<View>> read_view(const RenderRequest& request) {
     if (!request.camera || !request.look)
         return std::optional<View>();
     const auto eye = read_place(*request.camera, "--camera");
@@ -61,24 +61,24 @@ Expected<std::optional<View>> read_view(const RenderRequest& request) {
     const auto look = read_place(*request.look, "--look");
     if (!look)
         return tl::unexpected(look.error());
-    if (glm::distance(*eye, *look) < least_look_m)
-        return failed(kit::exit_usage, "render: --look is the camera's own place");
+    if (glm::distance(*eye, *look) < min_look_m)
+        return cli::fail(cli::exit_usage, "render: --look is the camera's own place");
     return std::optional<View>({*eye, *look});
 }
 
-Expected<std::optional<Rectangle>> read_region(const std::optional<std::string>& text) {
+cli::Result<std::optional<trace::WorldRectangle>> read_region(const std::optional<std::string>& text) {
     if (!text)
-        return std::optional<Rectangle>();
+        return std::optional<trace::WorldRectangle>();
     const auto n = kit::number_list(*text, 4);
     const bool fits =
-        n && are_in_world(*n) && (*n)[2] - (*n)[0] >= least_side_m && (*n)[3] - (*n)[1] >= least_side_m;
+        n && are_in_world(*n) && (*n)[2] - (*n)[0] >= min_side_m && (*n)[3] - (*n)[1] >= min_side_m;
     if (!fits)
-        return failed(
-            kit::exit_usage,
+        return cli::fail(
+            cli::exit_usage,
             fmt::format("render: --region takes X0,Y0,X1,Y1 of the world, at least {} m a side, not \"{}\"",
-                        least_side_m,
+                        min_side_m,
                         *text));
-    return std::optional<Rectangle>({glm::vec2((*n)[0], (*n)[1]), glm::vec2((*n)[2], (*n)[3])});
+    return std::optional<trace::WorldRectangle>({glm::vec2((*n)[0], (*n)[1]), glm::vec2((*n)[2], (*n)[3])});
 }
 
 // No minus before 0.

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "bakerd/picture/camera.h"
-#include "bakerd/picture/failure.h"
 #include "bakerd/picture/render_request.h"
 #include "bakerd/picture/view_rule.h"
+#include "format/cli/failure.h"
 
 #include <glm/vec3.hpp>
 
@@ -13,10 +13,11 @@
 
 namespace drtv::picture {
 
-[[nodiscard]] Expected<Size> read_size(const std::string& text);
+[[nodiscard]] cli::Result<Size> read_size(const std::string& text);
 // Nothing where there is no camera.
-[[nodiscard]] Expected<std::optional<View>> read_view(const RenderRequest& request);
-[[nodiscard]] Expected<std::optional<Rectangle>> read_region(const std::optional<std::string>& text);
+[[nodiscard]] cli::Result<std::optional<View>> read_view(const RenderRequest& request);
+[[nodiscard]] cli::Result<std::optional<trace::WorldRectangle>> read_region(
+    const std::optional<std::string>& text);
 
 [[nodiscard]] glm::dvec3 in_millimetres(const glm::vec3& place);
 // "1,2.5,3", in millimetres.

@@ -18,12 +18,12 @@ namespace {
 
 constexpr float eye_m = 1.7f;
 constexpr float probe_m = 1;  // over the ground
-constexpr float least_distance_m = 2;
-constexpr float most_sky = 0.6f;
-constexpr std::size_t least_objects = 3;
+constexpr float min_distance_m = 2;
+constexpr float max_sky = 0.6f;
+constexpr std::size_t min_objects = 3;
 constexpr float wanted_sky = 0.3f;
 constexpr float near_log2 = 3;  // 8 m
-constexpr std::size_t most_eyes = 240;
+constexpr std::size_t max_eyes = 240;
 constexpr std::size_t ways = 12;
 constexpr Size grid = {24, 14};  // rays of a view
 constexpr float fov_deg = 60;
@@ -32,7 +32,7 @@ std::vector<glm::vec3> eyes_of(const SectorSet& set) {
     std::vector<glm::vec3> eyes;
     for_each_ground_probe(
         set, [&](const glm::vec3& place) { eyes.push_back(place + glm::vec3(0, 0, eye_m - probe_m)); });
-    const std::size_t count = std::min(most_eyes, eyes.size());
+    const std::size_t count = std::min(max_eyes, eyes.size());
     std::vector<glm::vec3> chosen;
     for (std::size_t n = 0; n < count; ++n)
         chosen.push_back(eyes[(2 * n + 1) * eyes.size() / (2 * count)]);
@@ -57,7 +57,7 @@ class Looking {
             const std::optional<trace::Hit> hit = scene_.closest(ray);
             if (!hit)
                 continue;
-            if (hit->distance_m < least_distance_m || scene_.surface(*hit, 1).absorbs)
+            if (hit->distance_m < min_distance_m || scene_.surface(*hit, 1).absorbs)
                 return {view, -INFINITY};
             objects_.push_back(scene_.object_index(hit->instance));
             depths_.push_back(static_cast<float>(log2_of(static_cast<double>(hit->distance_m))));
@@ -86,7 +86,7 @@ class Looking {
             variety -= share * static_cast<float>(log2_of(static_cast<double>(share)));
         const float worth = std::min(variety, 6.0f) / 3 + std::min(std::sqrt(spread), 2.0f) / 2 -
                             1.5f * std::abs(sky - wanted_sky) - 2 * near;
-        const bool is_good = sky <= most_sky && shares.size() >= least_objects;
+        const bool is_good = sky <= max_sky && shares.size() >= min_objects;
         return is_good ? worth : worth - 10;
     }
 

@@ -33,20 +33,20 @@ std::vector<const Item*> sides_of(const Change& change) {
 
 class Assessor {
   public:
-    Assessor(const Footprint& footprint, const bake::Settings& settings, float tolerance, bake::World& world)
+    Assessor(const Footprint& footprint, const settings::JobSettings& settings, bake::World& world)
         : footprint_(footprint),
-          settings_(settings),
+          settings_(settings.bake),
           world_(world),
           crossed_blocks_(footprint),
           solid_tests_(footprint),
-          placement_reach_(placement_reach(footprint, settings, world)) {
-        assessment_.tolerance = footprint.without_bounds ? 0 : tolerance;
+          placement_reach_(placement_reach(footprint, settings.bake, world)) {
+        assessment_.tolerance = footprint.without_bounds ? 0 : settings.tolerance;
     }
 
     Assessment run(std::span<const Change> changes) {
         set_gain(changes);
         for (const ProbeRecord& probe : footprint_.probes)
-            assessment_.probe_bounds.push_back(probe.share * assessment_.gain);
+            assessment_.probe_bounds.push_back(probe.changed_weight * assessment_.gain);
         for (std::size_t n = 0; n < changes.size() && !settled(); ++n) {
             const auto [weight, cause] = weigh(changes[n]);
             if (!(weight > 0) || (assessment_.change && weight <= assessment_.weight))
@@ -78,8 +78,8 @@ class Assessor {
         for (const Change& change : changes)
             std::ranges::copy(boxes_of(change), std::back_inserter(boxes));
         std::erase_if(boxes, [&](const Bounds& box) { return !within_reach({&box, 1}); });
-        const float before = footprint_.most_scattered;
-        const float now = std::max(before, world_.most_scattered());
+        const float before = footprint_.max_scattered;
+        const float now = std::max(before, world_.max_scattered());
         assessment_.static_gain = raised_gain(footprint_.static_gain, before, now, settings_) +
                                   static_gain(world_.lights(), now, boxes, settings_);
         assessment_.gain = std::max(1.0f, assessment_.static_gain);
@@ -153,12 +153,12 @@ class Assessor {
         float most = 0;
         for (std::size_t p = 0; p < footprint_.probes.size(); ++p) {
             float& bound = assessment_.probe_bounds[p];
-            float share = later[quarter_of(footprint_.sector, footprint_.probes[p].position)] * gain;
+            float more = later[quarter_of(footprint_.sector, footprint_.probes[p].position)] * gain;
             // No need to look for more than what settles it.
-            if (!over(bound + share))
-                share += first_rays().share_of(p, boxes) * gain;
-            bound += share;
-            most = std::max(most, share);
+            if (!over(bound + more))
+                more += first_rays().weight_of(p, boxes) * gain;
+            bound += more;
+            most = std::max(most, more);
         }
         return most;
     }
@@ -217,7 +217,7 @@ class Assessor {
     }
 
     const Footprint& footprint_;
-    const bake::Settings& settings_;
+    const settings::BakeSettings& settings_;
     bake::World& world_;
     CrossedBlocks crossed_blocks_;
     SolidTestChanges solid_tests_;
@@ -231,11 +231,10 @@ class Assessor {
 }  // namespace
 
 Assessment assess(const Footprint& footprint,
-                  const bake::Settings& settings,
+                  const settings::JobSettings& settings,
                   std::span<const Change> changes,
-                  float tolerance,
                   bake::World& world) {
-    return Assessor(footprint, settings, tolerance, world).run(changes);
+    return Assessor(footprint, settings, world).run(changes);
 }
 
 float share_to_bake(const Assessment& assessment) {

@@ -2,11 +2,11 @@
 // between the two.
 #pragma once
 
-#include "bakerd/bake/settings.h"
 #include "bakerd/bake/world.h"
 #include "bakerd/reuse/footprint.h"
 #include "bakerd/reuse/inventory.h"
 #include "bakerd/reuse/verdict.h"
+#include "settings/bake_settings.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -38,16 +38,15 @@ struct Assessment {
 };
 
 // Whether the result of a bake with `settings` holds for the map of `world`; `changes` are those from the
-// baked map to it. `tolerance` is the largest bound of a near hit; 0 asks for the same bytes. The bound
-// covers all changes together, and edits in between are none of its concern: one that is undone counts
-// nothing.
+// baked map to it. The settings' tolerance is the largest bound of a near hit; 0 asks for the same bytes. The
+// bound covers all changes together. Only the difference of the two maps counts: an edit that was undone does
+// not.
 //
 // Ranges of coefficients: sky visibility 1, radiance transfer 0.2821 (i = 0) and 0.9772 (i > 0), static
 // irradiance bake::static_irradiance_range. REQUIRES: a FloatMode on this thread.
 [[nodiscard]] Assessment assess(const Footprint& footprint,
-                                const bake::Settings& settings,
+                                const settings::JobSettings& settings,
                                 std::span<const Change> changes,
-                                float tolerance,
                                 bake::World& world);
 
 // Of the sector's probes those that a bake cannot take over. REQUIRES: the verdict is rebake.

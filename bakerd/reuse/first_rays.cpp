@@ -104,7 +104,7 @@ FirstRays::FirstRays(const Footprint& footprint, const bake::SampleTable& sample
     }
 }
 
-float FirstRays::share_of(std::size_t number, std::span<const Bounds> boxes) const {
+float FirstRays::weight_of(std::size_t number, std::span<const Bounds> boxes) const {
     const Probe& probe = probes_[number];
     std::vector<Window> windows;
     for (const Bounds& box : boxes) {

@@ -22,9 +22,9 @@ class FirstRays {
     // Of the footprint's probes, each with its shift of the samples. REQUIRES: all three outlive it.
     FirstRays(const Footprint& footprint, const bake::SampleTable& samples, const trace::Scene& scene);
 
-    // The largest share of a coefficient of a probe that rays into one of the boxes have. Above 0 when there
+    // The weight of the rays of a probe that go into one of the boxes. Above 0 when there
     // are such rays at all. REQUIRES: what changed lies inside the boxes.
-    [[nodiscard]] float share_of(std::size_t probe, std::span<const Bounds> boxes) const;
+    [[nodiscard]] float weight_of(std::size_t probe, std::span<const Bounds> boxes) const;
 
   private:
     // Part of the plane of sample numbers.

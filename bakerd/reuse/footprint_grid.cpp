@@ -10,8 +10,9 @@
 namespace drtv::reuse {
 namespace {
 
-// By measurement (CHANGELOG): finer cells do not fit into the record, coarser ones bake sectors again without
-// need. Height tells most: rays pass above what stands on the ground.
+// Measured (docs/measurements.md, "Size and sharpness of the record"): finer cells do not fit into the
+// record, coarser ones bake sectors again without need. Height tells most: rays pass above what stands on the
+// ground.
 constexpr std::int32_t min_cell_m = 16, min_layer_m = 8;
 constexpr std::int32_t max_columns = 80, max_layers = 48;
 // New things may stand as much higher than all others before they are beyond the grid.
@@ -66,7 +67,7 @@ FootprintGrid footprint_grid(map::SectorCoordinate sector, float distance_m, flo
 }
 
 FootprintGrid footprint_grid(map::SectorCoordinate sector,
-                             const bake::Settings& settings,
+                             const settings::BakeSettings& settings,
                              bake::World& world) {
     const map::Bounds bounds = world.surroundings(sector, settings).scene->bounds();
     const float distance_m = bake::scene_distance_m(world.placement_tags(), settings);

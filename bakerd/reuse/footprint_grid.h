@@ -1,10 +1,10 @@
 // The cells in which a record says where the rays of a sector went.
 #pragma once
 
-#include "bakerd/bake/settings.h"
 #include "bakerd/bake/world.h"
 #include "bakerd/map/ground.h"
 #include "placement/placement.h"
+#include "settings/bake_settings.h"
 
 #include <glm/vec3.hpp>
 
@@ -57,7 +57,7 @@ struct FootprintGrid {
 
 // Covers all that a bake of the sector looks at.
 [[nodiscard]] FootprintGrid footprint_grid(map::SectorCoordinate sector,
-                                           const bake::Settings& settings,
+                                           const settings::BakeSettings& settings,
                                            bake::World& world);
 
 // Probes of a quarter of the sector share their weights: what many of them hardly see, some see well.

@@ -52,7 +52,7 @@ void visit_members(const std::vector<ProbeRecord>&, Visit visit) {
     visit(std::mem_fn(&ProbeRecord::rays), Neighbours::alike);
     visit(std::mem_fn(&ProbeRecord::shadow_rays), Neighbours::alike);
     visit(std::mem_fn(&ProbeRecord::error), Neighbours::unrelated);
-    visit(std::mem_fn(&ProbeRecord::share), Neighbours::unrelated);
+    visit(std::mem_fn(&ProbeRecord::changed_weight), Neighbours::unrelated);
 }
 
 template <class Visit>
@@ -149,7 +149,7 @@ std::vector<std::uint8_t> encode_with(const Footprint& footprint, std::uint8_t m
     writer.add(footprint.rays);
     writer.add(footprint.without_bounds);
     writer.add(footprint.static_gain);
-    writer.add(footprint.most_scattered);
+    writer.add(footprint.max_scattered);
     writer.add(footprint.placement_m);
     writer.add(footprint.placement);
     add_records(writer, footprint.probes);
@@ -184,11 +184,11 @@ bool is_sound(const Footprint& footprint) {
     const auto sensible = [](float value) { return value >= 0 && std::isfinite(value); };
     const bool has_rays = footprint.rays > 0 && footprint.rays <= max_rays;
     const bool has_lengths = sensible(footprint.reach_m) && sensible(footprint.placement_m);
-    const bool has_light = sensible(footprint.static_gain) && footprint.most_scattered > 0 &&
-                           std::isfinite(footprint.most_scattered);
-    const auto has_share = [&](const ProbeRecord& probe) { return sensible(probe.share); };
+    const bool has_light = sensible(footprint.static_gain) && footprint.max_scattered > 0 &&
+                           std::isfinite(footprint.max_scattered);
+    const auto has_weight = [&](const ProbeRecord& probe) { return sensible(probe.changed_weight); };
     return has_rays && has_lengths && has_light && footprint.probes.size() <= max_probes &&
-           std::ranges::all_of(footprint.probes, has_share);
+           std::ranges::all_of(footprint.probes, has_weight);
 }
 
 void read_crossed(RecordReader& reader, Footprint& footprint) {
@@ -223,7 +223,7 @@ std::optional<Footprint> decode_footprint(std::span<const std::uint8_t> bytes) {
     footprint.rays = reader.read<std::uint32_t>();
     footprint.without_bounds = reader.read<std::uint8_t>() != 0;
     footprint.static_gain = reader.read<float>();
-    footprint.most_scattered = reader.read<float>();
+    footprint.max_scattered = reader.read<float>();
     footprint.placement_m = reader.read<float>();
     footprint.placement = reader.read<map::Digest>();
     footprint.probes = read_records<ProbeRecord>(reader);

@@ -86,9 +86,9 @@ void FootprintRecorder::merge_into(Footprint& footprint) {
     for (std::size_t quarter = 0; quarter < quarter_count; ++quarter) {
         for (std::size_t n = 0; n < grid_.block_count(); ++n) {
             const auto lanes = std::bit_cast<std::array<std::uint16_t, basis_count>>(largest_[quarter][n]);
-            const float share = static_cast<float>(*std::ranges::max_element(lanes)) / units_of_one;
+            const float largest = static_cast<float>(*std::ranges::max_element(lanes)) / units_of_one;
             std::uint8_t& weight = footprint.weights[n * quarter_count + quarter];
-            weight = std::max(weight, weight_code(share));
+            weight = std::max(weight, weight_code(largest));
         }
     }
 }

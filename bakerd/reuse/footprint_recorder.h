@@ -25,7 +25,7 @@ class FootprintRecorder final : public bake::RayWatch {
     void begin_probe(const glm::ivec3& position_units) override;
 
     // Of a path's parts the first through a block counts alone: later ones weigh less
-    // (trace::most_scattered).
+    // (trace::max_scattered).
     void record_segments(std::span<const bake::PathSegment> segments) override;
 
     void record_shadow_rays(std::span<const bake::ShadowRay> rays) override;

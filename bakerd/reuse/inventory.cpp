@@ -117,7 +117,7 @@ Inventory take_inventory(bake::World& world) {
                                    sun ? map::Bounds() : point(light.position),
                                    light.name});
     }
-    for (const map::ManualProbe& probe : map.probes) {
+    for (const map::ProbeNode& probe : map.probes) {
         inventory.items.push_back({ItemKind::manual_probe,
                                    false,
                                    false,
@@ -126,7 +126,7 @@ Inventory take_inventory(bake::World& world) {
                                    point(glm::vec3(probe.position)),
                                    probe.name});
     }
-    for (const map::Volume& volume : map.volumes) {
+    for (const map::VolumeNode& volume : map.volumes) {
         if (volume.kind == map::VolumeKind::interior)
             continue;
         map::Bounds bounds;

@@ -39,7 +39,7 @@ void add_placed(map::Hasher& hasher, const bake::PlacedSector& placed) {
     }
     hasher.add(placed.sector.z_origin_units);
     hasher.add(placed.sector.z_shift);
-    const placement::Report& report = placed.report;
+    const placement::PlacementReport& report = placed.report;
     for (const std::uint32_t count : {report.candidates,
                                       report.moved_out,
                                       report.dropped_in_solid,
@@ -55,7 +55,7 @@ void add_placed(map::Hasher& hasher, const bake::PlacedSector& placed) {
 
 std::optional<map::Digest> placement_digest(bake::World& world,
                                             map::SectorCoordinate sector,
-                                            const bake::Settings& settings) {
+                                            const settings::BakeSettings& settings) {
     const auto scene = world.surroundings(sector, settings).scene;
     const std::int32_t around = settings.local_transfer ? 1 : 0;
     map::Hasher hasher;
@@ -75,7 +75,7 @@ std::optional<map::Digest> placement_digest(bake::World& world,
 }
 
 PlacementReach placement_reach(const Footprint& footprint,
-                               const bake::Settings& settings,
+                               const settings::BakeSettings& settings,
                                const bake::World& world) {
     const bake::PlacementTags& tags = world.placement_tags();
     return {std::max(footprint.placement_m, bake::placement_reach_m(tags, settings)),

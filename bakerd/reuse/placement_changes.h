@@ -1,11 +1,11 @@
 // Whether a change can move a sector's probes.
 #pragma once
 
-#include "bakerd/bake/settings.h"
 #include "bakerd/bake/world.h"
 #include "bakerd/reuse/boxes.h"
 #include "bakerd/reuse/footprint.h"
 #include "bakerd/reuse/inventory.h"
+#include "settings/bake_settings.h"
 
 #include <cstdint>
 #include <optional>
@@ -18,7 +18,7 @@ namespace drtv::reuse {
 // are the sector's positions and statistics. Nothing when some cannot be placed.
 [[nodiscard]] std::optional<map::Digest> placement_digest(bake::World& world,
                                                           map::SectorCoordinate sector,
-                                                          const bake::Settings& settings);
+                                                          const settings::BakeSettings& settings);
 
 enum class ProbesMove : std::uint8_t {
     no,
@@ -34,7 +34,7 @@ struct PlacementReach {
 
 // Of the map that was baked and of the world at hand.
 [[nodiscard]] PlacementReach placement_reach(const Footprint& footprint,
-                                             const bake::Settings& settings,
+                                             const settings::BakeSettings& settings,
                                              const bake::World& world);
 
 // What becomes of the probes when a thing is in one map alone. Solid tests are asked besides.

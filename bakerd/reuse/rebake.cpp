@@ -109,7 +109,7 @@ bool has_other_groups(const Sector& sector, const Sector& file) {
 
 class Recording {
   public:
-    Recording(bake::World& world, map::SectorCoordinate sector, const bake::Settings& settings)
+    Recording(bake::World& world, map::SectorCoordinate sector, const settings::BakeSettings& settings)
         : world_(world),
           sector_(sector),
           settings_(settings),
@@ -166,9 +166,9 @@ class Recording {
             const bake::ProbeCounts& counts = result.baked.counts[p];
             const auto reused = shares.find(position);
             const bool is_reused = reused != shares.end();
-            const float share = is_reused ? reused->second : 0;
+            const float changed_weight = is_reused ? reused->second : 0;
             result.footprint.probes.push_back(
-                {position, counts.rays, counts.shadow_rays, counts.error, share});
+                {position, counts.rays, counts.shadow_rays, counts.error, changed_weight});
             result.probes_reused += is_reused ? 1 : 0;
         }
     }
@@ -176,13 +176,13 @@ class Recording {
     // Of all maps of which probes are in the file.
     void record_static_light(Rebake& result, const EarlierBake* earlier) const {
         Footprint& footprint = result.footprint;
-        const bool near =
-            std::ranges::any_of(footprint.probes, [](const ProbeRecord& probe) { return probe.share > 0; });
-        footprint.most_scattered = world_.most_scattered();
+        const bool near = std::ranges::any_of(
+            footprint.probes, [](const ProbeRecord& probe) { return probe.changed_weight > 0; });
+        footprint.max_scattered = world_.max_scattered();
         if (near)
-            footprint.most_scattered = std::max(footprint.most_scattered, earlier->footprint.most_scattered);
-        footprint.static_gain = static_gain(
-            world_.lights(), footprint.most_scattered, *scene_, result.baked.positions, settings_);
+            footprint.max_scattered = std::max(footprint.max_scattered, earlier->footprint.max_scattered);
+        footprint.static_gain =
+            static_gain(world_.lights(), footprint.max_scattered, *scene_, result.baked.positions, settings_);
         if (near)
             footprint.static_gain = std::max(footprint.static_gain, earlier->assessment.static_gain);
     }
@@ -202,7 +202,7 @@ class Recording {
 
     bake::World& world_;
     const map::SectorCoordinate sector_;
-    const bake::Settings& settings_;
+    const settings::BakeSettings& settings_;
     const std::shared_ptr<const trace::Scene> scene_;
     const FootprintGrid grid_;
     FootprintRecorders recorders_;
@@ -212,7 +212,7 @@ class Recording {
 
 tl::expected<Rebake, std::string> bake_and_record(bake::World& world,
                                                   map::SectorCoordinate coordinate,
-                                                  const bake::Settings& settings,
+                                                  const settings::BakeSettings& settings,
                                                   const EarlierBake* earlier) {
     const trace::FloatMode float_mode;
     return Recording(world, coordinate, settings).bake(earlier);

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "bakerd/bake/sector_bake.h"
-#include "bakerd/bake/settings.h"
 #include "bakerd/bake/world.h"
 #include "bakerd/reuse/assessment.h"
 #include "bakerd/reuse/footprint.h"
+#include "settings/bake_settings.h"
 
 #include <drtv/sector.h>
 
@@ -37,7 +37,7 @@ struct Rebake {
 // it was assessed, are reused; with bounds of 0 the sector is the same, byte for byte, as without it.
 [[nodiscard]] tl::expected<Rebake, std::string> bake_and_record(bake::World& world,
                                                                 map::SectorCoordinate coordinate,
-                                                                const bake::Settings& settings,
+                                                                const settings::BakeSettings& settings,
                                                                 const EarlierBake* earlier = nullptr);
 
 }  // namespace drtv::reuse

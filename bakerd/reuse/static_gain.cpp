@@ -14,7 +14,7 @@ namespace drtv::reuse {
 namespace {
 
 // Nearer to a lamp than this counts as this: far above any tolerance all the same.
-constexpr float least_distance_m = 0.001f;
+constexpr float min_distance_m = 0.001f;
 
 // Of light of that radiance at each of so many points of a path.
 float of_path(float radiance, float scattered, std::uint32_t points) {
@@ -38,13 +38,13 @@ float irradiance(const NearLamp& lamp, float distance_m) {
 
 // What all lamps together bring at most to any one surface. A point that has one of them nearest is at least
 // half way from that to each other.
-float most_irradiance(const std::vector<NearLamp>& lamps) {
-    constexpr std::size_t most_in_pairs = 2048;
+float max_irradiance(const std::vector<NearLamp>& lamps) {
+    constexpr std::size_t max_in_pairs = 2048;
     float most = 0;
     float sum = 0;
     for (const NearLamp& lamp : lamps)
         sum += irradiance(lamp, lamp.distance_m);
-    if (lamps.size() > most_in_pairs)
+    if (lamps.size() > max_in_pairs)
         return sum;
     for (const NearLamp& nearest : lamps) {
         float together = irradiance(nearest, nearest.distance_m);
@@ -64,23 +64,23 @@ float static_gain(const bake::StaticLights& lights,
                   float scattered,
                   const trace::Scene& scene,
                   std::span<const placement::Position> probes,
-                  const bake::Settings& settings) {
+                  const settings::BakeSettings& settings) {
     const auto within_reach = [&](const glm::vec3& place, float radius_m) {
         return std::ranges::any_of(probes, [&](const placement::Position& probe) {
             return glm::distance(placement::metres(probe), place) - radius_m <= settings.reach_m;
         });
     };
     std::vector<NearLamp> lamps;
-    for (const bake::PointLight& lamp : lights.points()) {
+    for (const bake::StaticPointLight& lamp : lights.points()) {
         if (within_reach(lamp.position, 0))
             lamps.push_back(
                 {lamp.position,
                  bake::brightest(lamp.intensity),
-                 std::max(scene.distance_to_surface(lamp.position, settings.reach_m), least_distance_m)});
+                 std::max(scene.distance_to_surface(lamp.position, settings.reach_m), min_distance_m)});
     }
-    float irradiance = most_irradiance(lamps);
+    float irradiance = max_irradiance(lamps);
     float emitted = 0;
-    for (const bake::Sun& sun : lights.suns())
+    for (const bake::StaticSun& sun : lights.suns())
         irradiance += bake::brightest(sun.irradiance);
     for (const bake::EmissiveObject& emissive : lights.emissive()) {
         if (within_reach(emissive.centre, emissive.radius_m))
@@ -95,13 +95,13 @@ float static_gain(const bake::StaticLights& lights,
 float static_gain(const bake::StaticLights& lights,
                   float scattered,
                   std::span<const map::Bounds> boxes,
-                  const bake::Settings& settings) {
+                  const settings::BakeSettings& settings) {
     float most = 0;
     for (const map::Bounds& box : boxes) {
         float irradiance = 0;
-        for (const bake::PointLight& lamp : lights.points()) {
+        for (const bake::StaticPointLight& lamp : lights.points()) {
             const float distance_m = std::max(
-                glm::distance(lamp.position, glm::clamp(lamp.position, box.low, box.high)), least_distance_m);
+                glm::distance(lamp.position, glm::clamp(lamp.position, box.low, box.high)), min_distance_m);
             // Beyond, none that a probe knows of shines on what it can see.
             if (distance_m <= 2 * settings.reach_m)
                 irradiance += bake::brightest(lamp.intensity) / (distance_m * distance_m);
@@ -112,7 +112,10 @@ float static_gain(const bake::StaticLights& lights,
 }
 
 // Each of its terms has at most so many surfaces in it.
-float raised_gain(float gain, float scattered_before, float scattered_now, const bake::Settings& settings) {
+float raised_gain(float gain,
+                  float scattered_before,
+                  float scattered_now,
+                  const settings::BakeSettings& settings) {
     for (std::uint32_t bounce = 0; scattered_now > scattered_before && bounce < settings.bounces; ++bounce)
         gain *= scattered_now / scattered_before;
     return gain;

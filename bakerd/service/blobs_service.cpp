@@ -27,9 +27,10 @@ grpc::Status BlobsService::FindMissingBlobs(grpc::ServerContext*,
                                             const v1::FindMissingBlobsRequest* request,
                                             v1::FindMissingBlobsResponse* response) {
     if (request->blobs_size() > max_blobs_a_request)
-        return {grpc::StatusCode::INVALID_ARGUMENT,
-                fmt::format(
-                    "{} blobs in one request, the limit is {}", request->blobs_size(), max_blobs_a_request)};
+        return failed(
+            grpc::StatusCode::INVALID_ARGUMENT,
+            fmt::format(
+                "{} blobs in one request, the limit is {}", request->blobs_size(), max_blobs_a_request));
     for (const v1::Blob& blob : request->blobs()) {
         const auto digest = checked(blob);
         if (!digest)
@@ -48,15 +49,16 @@ grpc::Status BlobsService::UploadBlob(grpc::ServerContext*,
                                       v1::UploadBlobResponse* response) {
     v1::UploadBlobRequest request;
     if (!reader->Read(&request))
-        return {grpc::StatusCode::INVALID_ARGUMENT, "the upload has no first message"};
+        return failed(grpc::StatusCode::INVALID_ARGUMENT, "the upload has no first message");
     const v1::Blob blob = request.blob();
     const auto digest = checked(blob);
     if (!digest)
         return to_status(digest.error());
     if (request.offset() < 0 || request.offset() > blob.size_bytes())
-        return {grpc::StatusCode::INVALID_ARGUMENT,
-                fmt::format(
-                    "the offset {} lies outside the blob of {} bytes", request.offset(), blob.size_bytes())};
+        return failed(
+            grpc::StatusCode::INVALID_ARGUMENT,
+            fmt::format(
+                "the offset {} lies outside the blob of {} bytes", request.offset(), blob.size_bytes()));
     *response->mutable_blob() = blob;
     if (farm_.blobs().has(*digest))
         return grpc::Status::OK;
@@ -65,8 +67,9 @@ grpc::Status BlobsService::UploadBlob(grpc::ServerContext*,
         return to_status(upload.error());
     do {
         if (request.data().size() > max_chunk_bytes)
-            return {grpc::StatusCode::INVALID_ARGUMENT,
-                    fmt::format("a message of {} data bytes, the limit is 1 MiB", request.data().size())};
+            return failed(
+                grpc::StatusCode::INVALID_ARGUMENT,
+                fmt::format("a message of {} data bytes, the limit is 1 MiB", request.data().size()));
         if (auto appended = upload->append(bytes_of(request.data())); !appended)
             return to_status(appended.error());
     } while (reader->Read(&request));

@@ -1,5 +1,6 @@
 #include "bakerd/service/names.h"
 #include "bakerd/service/services.h"
+#include "settings/message/job_settings.h"
 
 #include <fmt/format.h>
 
@@ -42,8 +43,7 @@ void fill(const farm::JobView& view, v1::Job& out) {
     out.set_name(job_name(row.id));
     out.set_map(map_name(row.manifest));
     out.mutable_settings()->set_preset(row.preset);
-    for (const auto& [key, value] : row.overrides)
-        (*out.mutable_settings()->mutable_overrides())[key] = value;
+    settings::write_settings(row.settings, out);
     if (const auto& region = row.region) {
         out.mutable_region()->set_x0(region->x0);
         out.mutable_region()->set_y0(region->y0);
@@ -88,10 +88,13 @@ store::Result<farm::JobRequest> wanted_job(const v1::Job& job) {
     farm::JobRequest wanted;
     wanted.manifest = *map;
     wanted.preset = job.settings().preset();
-    wanted.overrides.insert(job.settings().overrides().begin(), job.settings().overrides().end());
+    const auto settings = settings::read_settings(job);
+    if (!settings)
+        return store::fail(store::ErrorCode::invalid_argument, settings.error());
+    wanted.settings = *settings;
     if (job.has_region())
         wanted.region =
-            farm::Region{job.region().x0(), job.region().y0(), job.region().x1(), job.region().y1()};
+            farm::JobRegion{job.region().x0(), job.region().y0(), job.region().x1(), job.region().y1()};
     return wanted;
 }
 
@@ -199,8 +202,8 @@ grpc::Status JobsService::WatchJob(grpc::ServerContext* context,
         ~Seat() { --taken; }
     } seat(watchers_);
     if (seat.number > max_watchers)
-        return {grpc::StatusCode::RESOURCE_EXHAUSTED,
-                fmt::format("{} clients are watching already", max_watchers)};
+        return failed(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                      fmt::format("{} clients are watching already", max_watchers));
     for (std::uint64_t seen = 0;;) {
         const auto view = farm_.wait_for_change(*id, seen, watch_patience);
         if (!view)
@@ -208,7 +211,7 @@ grpc::Status JobsService::WatchJob(grpc::ServerContext* context,
         if (context->IsCancelled())
             return grpc::Status::CANCELLED;
         if (stopping_)
-            return {grpc::StatusCode::UNAVAILABLE, "the server is stopping"};
+            return failed(grpc::StatusCode::UNAVAILABLE, "the server is stopping");
         if (view->version == seen)
             continue;
         seen = view->version;

@@ -33,12 +33,12 @@ grpc::Status MapsService::CreateMap(grpc::ServerContext*,
                                     v1::Map* response) {
     const v1::Map& map = request->map();
     if (map.files_size() > max_files || map.roots_size() > max_roots) {
-        return {grpc::StatusCode::INVALID_ARGUMENT,
-                fmt::format("{} files and {} roots, the limits are {} and {}",
-                            map.files_size(),
-                            map.roots_size(),
-                            max_files,
-                            max_roots)};
+        return failed(grpc::StatusCode::INVALID_ARGUMENT,
+                      fmt::format("{} files and {} roots, the limits are {} and {}",
+                                  map.files_size(),
+                                  map.roots_size(),
+                                  max_files,
+                                  max_roots));
     }
     store::Manifest manifest;
     for (const v1::MapFile& file : map.files()) {

@@ -1,5 +1,7 @@
 #include "bakerd/service/names.h"
 
+#include "drtv/v1/error.pb.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +17,12 @@ std::string shortened(const std::string& text) {
 }
 
 }  // namespace
+
+grpc::Status failed(grpc::StatusCode code, const std::string& sentence) {
+    v1::ErrorDetails details;
+    details.set_server_version(DRTV_VERSION);
+    return {code, sentence, details.SerializeAsString()};
+}
 
 grpc::Status to_status(const store::Error& error) {
     using store::ErrorCode;
@@ -44,7 +52,7 @@ grpc::Status to_status(const store::Error& error) {
         case ErrorCode::internal:
             break;
     }
-    return {code, error.message};
+    return failed(code, error.message);
 }
 
 std::string job_name(std::int64_t id) {

@@ -11,6 +11,8 @@
 
 namespace drtv::service {
 
+// With the details that say that bakerd made it (error.proto).
+[[nodiscard]] grpc::Status failed(grpc::StatusCode code, const std::string& sentence);
 [[nodiscard]] grpc::Status to_status(const store::Error& error);
 
 [[nodiscard]] std::string job_name(std::int64_t id);            // "jobs/12"

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t default_page = 1000, max_page = 10000;
 
-v1::Sector::State to_proto(const farm::SectorView& view) {
+v1::Sector::State to_proto(const farm::JobSectorView& view) {
     if (view.running)
         return v1::Sector::RUNNING;
     switch (view.row.state) {
@@ -24,7 +24,7 @@ v1::Sector::State to_proto(const farm::SectorView& view) {
     return v1::Sector::STATE_UNSPECIFIED;
 }
 
-void fill(const farm::SectorView& view, v1::Sector& out) {
+void fill(const farm::JobSectorView& view, v1::Sector& out) {
     const farm::JobSectorRow& row = view.row;
     out.mutable_coordinate()->set_i(row.sector.i);
     out.mutable_coordinate()->set_j(row.sector.j);
@@ -71,7 +71,7 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
         return to_status(job.error());
     std::int64_t lost = 0;
     std::string first_loss;
-    const auto send_or_note = [&](const farm::SectorView& view) -> grpc::Status {
+    const auto send_or_note = [&](const farm::JobSectorView& view) -> grpc::Status {
         grpc::Status status = send(view, *writer);
         if (status.error_code() != grpc::StatusCode::DATA_LOSS)
             return status;
@@ -83,17 +83,17 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
         if (lost == 0)
             return grpc::Status::OK;
         const std::string more = lost > 1 ? fmt::format(" (and {} more)", lost - 1) : "";
-        return {
+        return failed(
             grpc::StatusCode::DATA_LOSS,
             fmt::format(
-                "{}{}; submit the map again to bake {} anew", first_loss, more, lost > 1 ? "them" : "it")};
+                "{}{}; submit the map again to bake {} again", first_loss, more, lost > 1 ? "them" : "it"));
     };
     if (request->sectors_size() == 0) {
         for (std::int64_t first = 0;; first += default_page) {
             const auto views = farm_.list_sectors(*job, first, default_page);
             if (!views)
                 return to_status(views.error());
-            for (const farm::SectorView& view : *views) {
+            for (const farm::JobSectorView& view : *views) {
                 if (view.row.state != farm::SectorState::done)
                     continue;
                 if (grpc::Status status = send_or_note(view); !status.ok())
@@ -108,21 +108,21 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
         if (!view)
             return to_status(view.error());
         if (view->row.state != farm::SectorState::done)
-            return {grpc::StatusCode::FAILED_PRECONDITION,
-                    fmt::format("sector ({}, {}) is not done", coordinate.i(), coordinate.j())};
+            return failed(grpc::StatusCode::FAILED_PRECONDITION,
+                          fmt::format("sector ({}, {}) is not done", coordinate.i(), coordinate.j()));
         if (grpc::Status status = send_or_note(*view); !status.ok())
             return status;
     }
     return end();
 }
 
-grpc::Status SectorsService::send(const farm::SectorView& view,
+grpc::Status SectorsService::send(const farm::JobSectorView& view,
                                   grpc::ServerWriter<v1::PullSectorsResponse>& writer) {
     const auto bytes = farm_.blobs().get(view.row.file);
     if (!bytes)
-        return {
+        return failed(
             grpc::StatusCode::DATA_LOSS,
-            fmt::format("sector ({}, {}): {}", view.row.sector.i, view.row.sector.j, bytes.error().message)};
+            fmt::format("sector ({}, {}): {}", view.row.sector.i, view.row.sector.j, bytes.error().message));
     v1::PullSectorsResponse message;
     fill(view, *message.mutable_sector());
     if (!writer.Write(message))

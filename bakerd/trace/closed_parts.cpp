@@ -45,10 +45,10 @@ struct Sum {
 
 bool bounds_volume(const Sum& sum) {
     // Of its cube: two sheets back to back bound less.
-    constexpr double least_share = 1e-7;
+    constexpr double min_share = 1e-7;
     const glm::dvec3 size(sum.bounds.high - sum.bounds.low);
     const double side = std::max({size.x, size.y, size.z});
-    return sum.is_there && std::abs(sum.six_volumes) > 6 * least_share * side * side * side;
+    return sum.is_there && std::abs(sum.six_volumes) > 6 * min_share * side * side * side;
 }
 
 }  // namespace

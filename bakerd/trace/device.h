@@ -1,7 +1,7 @@
 // The ray tracing device, pinned to one instruction set: Embree's code paths differ in what they round, so
-// that a result is named by the class it was made with (DESIGN, promise 1). Every x86-64 CPU with AVX2 is of
-// the same class: what CPUs of different vendors approximate in their own way (`rcpps`) stands in no number
-// that counts (triangle.h).
+// that a result is named by the class it was made with (docs/design.md, promise 1). Every x86-64 CPU with
+// AVX2 is of the same class: what CPUs of different vendors approximate in their own way (`rcpps`) stands in
+// no number that counts (triangle.h).
 #pragma once
 
 #include <memory>

@@ -66,13 +66,13 @@ std::uint64_t MeshShelf::next_revision() {
 std::shared_ptr<const MeshBvh> MeshShelf::find(const map::Digest& mesh,
                                                const InstanceShape& shape,
                                                std::uint64_t revision) {
-    constexpr std::uint64_t most_revisions = 8;
+    constexpr std::uint64_t max_revisions = 8;
     const std::lock_guard lock(mutex_);
     const auto found = by_mesh_.find(mesh);
     if (found == by_mesh_.end())
         return nullptr;
     std::shared_ptr<const MeshBvh> bvh = found->second.lock();
-    return bvh && bvh->shape().covers(shape) && revision - bvh->revision() < most_revisions ? bvh : nullptr;
+    return bvh && bvh->shape().covers(shape) && revision - bvh->revision() < max_revisions ? bvh : nullptr;
 }
 
 void MeshShelf::keep(const map::Digest& mesh, const std::shared_ptr<const MeshBvh>& bvh) {

@@ -63,27 +63,27 @@ bool meets_front(const TriangleSet& set, const EmbreeHit& hit) {
 }
 
 // Works the intersection out; what is met nowhere lies infinitely far.
-void resolve(Candidate& hit, const Query& query, const Ray& ray) {
+void resolve(HitCandidate& hit, const Query& query, const Ray& ray) {
     const glm::mat4x3& world_from_object = query.scene.world_from_object(hit.id.instance);
     const ObjectTriangle corners = corners_of(*hit.set, hit.id.triangle);
     hit.at = intersect(ray, world_from_object, corners);
     const float order_m = hit.at ? order_of(*hit.set, *hit.at, ray, world_from_object, corners)
                                  : std::numeric_limits<float>::infinity();
-    hit.least_m = hit.most_m = order_m;
+    hit.min_m = hit.max_m = order_m;
     hit.front = hit.at && query.scene.meets_front(hit.id.instance, *hit.at, ray);
 }
 
-void resolve_late(Candidate& hit, const Query& query, const Ray& ray) {
+void resolve_late(HitCandidate& hit, const Query& query, const Ray& ray) {
     if (hit.set != nullptr && !hit.at)
         resolve(hit, query, ray);
 }
 
-bool is_there(const Candidate& hit) {
+bool is_there(const HitCandidate& hit) {
     return !hit.set->mixed || trace::is_there(point_of(*hit.set, hit.id.triangle, *hit.at));
 }
 
 // By what the triangle belongs to, before the hit is looked at.
-bool may_be_wanted(const Candidate& found, const Query& query) {
+bool may_be_wanted(const HitCandidate& found, const Query& query) {
     const TriangleSet& set = *found.set;
     switch (query.collected) {
         case Collected::there:
@@ -103,39 +103,39 @@ bool may_be_wanted(const Candidate& found, const Query& query) {
     return false;
 }
 
-bool is_wanted(const Candidate& hit, Collected wanted) {
+bool is_wanted(const HitCandidate& hit, Collected wanted) {
     if (wanted == Collected::partly_there || wanted == Collected::closed)
         return true;
     return is_there(hit) != (wanted == Collected::through_glass);
 }
 
 // Whether it hides what lies behind.
-bool is_in_the_way(const Candidate& hit, const Query& query) {
+bool is_in_the_way(const HitCandidate& hit, const Query& query) {
     return (query.by_chance || !is_decided_by_chance(*hit.set)) && is_there(hit);
 }
 
 // Of two at the same distance the one of the smaller id is nearer.
-bool is_nearer(const Candidate& a, const Candidate& b) {
-    return a.most_m < b.most_m || (a.most_m == b.most_m && (b.set == nullptr || a.id < b.id));
+bool is_nearer(const HitCandidate& a, const HitCandidate& b) {
+    return a.max_m < b.max_m || (a.max_m == b.max_m && (b.set == nullptr || a.id < b.id));
 }
 
 // What lies farther is not looked at any more.
-void accept(const RTCFilterFunctionNArguments& args, const Ray& ray, const Candidate& hit) {
+void accept(const RTCFilterFunctionNArguments& args, const Ray& ray, const HitCandidate& hit) {
     RTCRayN_tfar(args.ray, 1, 0) = limit_of(ray, hit);
     args.valid[0] = -1;
 }
 
 // The triangle's intersection for who asked for all of them.
-void collect(const Candidate& found, const Query& query, const Ray& ray) {
+void collect(const HitCandidate& found, const Query& query, const Ray& ray) {
     if (!may_be_wanted(found, query))
         return;
-    Candidate hit = found;
+    HitCandidate hit = found;
     resolve(hit, query, ray);
     if (hit.at && hit.at->distance_m <= double{ray.far_m} && is_wanted(hit, query.collected))
         query.crossings->push_back({hit.id, *hit.at});
 }
 
-void consider(const RTCFilterFunctionNArguments& args, Candidate hit, Query& query, const Ray& ray) {
+void consider(const RTCFilterFunctionNArguments& args, HitCandidate hit, Query& query, const Ray& ray) {
     Closest& closest = query.closest;
     resolve(hit, query, ray);
     resolve_late(closest.hit, query, ray);
@@ -144,13 +144,13 @@ void consider(const RTCFilterFunctionNArguments& args, Candidate hit, Query& que
     if (is_nearer(hit, closest.hit)) {
         if (!is_there(hit))
             return;
-        closest.place_of_closer(hit.front, hit.most_m, ray) = hit;
+        closest.place_of_closer(hit.front, hit.max_m, ray) = hit;
         accept(args, ray, hit);
     } else if (hit.front && !closest.hit.front) {
         if (closest.front)
             resolve_late(*closest.front, query, ray);
         const bool is_first = !closest.front || is_nearer(hit, *closest.front);
-        if (is_first && hit.most_m <= ray.far_m && is_there(hit))
+        if (is_first && hit.max_m <= ray.far_m && is_there(hit))
             closest.front = hit;
     }
 }
@@ -173,20 +173,20 @@ void intersect_filter(const RTCFilterFunctionNArguments* args) {
     const EmbreeHit offered = embree_hit(*args, set, 1, 0);
     if (!set.mixed && is_sure(ray, offered)) {
         const float doubt_m = query_slack(ray, offered.distance_m) * 0.5f;
-        const float least_m = offered.distance_m - doubt_m;
-        const float most_m = offered.distance_m + doubt_m;
+        const float min_m = offered.distance_m - doubt_m;
+        const float max_m = offered.distance_m + doubt_m;
         // Nearer, the ray may start beyond it.
-        const bool ahead = least_m > 0;
+        const bool ahead = min_m > 0;
         const bool front = meets_front(set, offered);
-        const Candidate& closest = query.closest.hit;
-        if (least_m > closest.most_m && (closest.front || !front))
+        const HitCandidate& closest = query.closest.hit;
+        if (min_m > closest.max_m && (closest.front || !front))
             return;
-        if (ahead && most_m < closest.least_m) {
-            Candidate& closer = query.closest.place_of_closer(front, most_m, ray);
+        if (ahead && max_m < closest.min_m) {
+            HitCandidate& closer = query.closest.place_of_closer(front, max_m, ray);
             closer.id = id;
             closer.set = &set;
-            closer.least_m = least_m;
-            closer.most_m = most_m;
+            closer.min_m = min_m;
+            closer.max_m = max_m;
             closer.front = front;
             closer.at.reset();
             // For when the intersection is worked out.
@@ -224,19 +224,19 @@ void occluded_filter(const RTCFilterFunctionNArguments* args) {
         if (!set.mixed) {
             const EmbreeHit offered = embree_hit(*args, set, args->N, n);
             const float doubt_m = query_slack(ray, offered.distance_m);
-            const float most_m = offered.distance_m + doubt_m;
+            const float max_m = offered.distance_m + doubt_m;
             // Nearer to the end, a surface may be the one on which the ray ends.
             const float sure_m = query.to_surface ? ray.far_m * (1 - 0x1p-6f) : ray.far_m;
             // Near the start, the ray may start beyond it.
-            if (offered.distance_m > doubt_m && most_m < sure_m && is_sure(ray, offered))
+            if (offered.distance_m > doubt_m && max_m < sure_m && is_sure(ray, offered))
                 continue;
         }
-        Candidate hit{id, &set, 0, 0, true, {}};
+        HitCandidate hit{id, &set, 0, 0, true, {}};
         resolve(hit, query, ray);
         // By rounding it may be met beyond the end.
         const bool ends_here = query.to_surface && hit.at && holds_end(ray, set, {id, *hit.at}, query.scene);
         query.ends_on_back = query.ends_on_back || (ends_here && !hit.front);
-        const bool hides = !ends_here && hit.at && hit.most_m <= ray.far_m && is_in_the_way(hit, query);
+        const bool hides = !ends_here && hit.at && hit.max_m <= ray.far_m && is_in_the_way(hit, query);
         if (!hides)
             args->valid[n] = 0;
     }

@@ -17,7 +17,7 @@ float instance_margin_m(const map::Map& map) {
         farthest = glm::max(farthest,
                             glm::abs(object.world_from_object[3]));  // a mesh may lie far from its own origin
     }
-    for (const map::ManualProbe& probe : map.probes)
+    for (const map::ProbeNode& probe : map.probes)
         farthest = glm::max(farthest, glm::vec3(glm::abs(probe.position)));
     const float extent_m = std::max({farthest.x, farthest.y, farthest.z});
     // With unit roundoff e = 2^-24 and rays between any two points of the map: 2 reciprocals off by 5 e and
@@ -29,7 +29,7 @@ float instance_margin_m(const map::Map& map) {
 
 std::optional<InstanceShape> instance_shape(const glm::mat4x3& world_from_object, float margin_m) {
     constexpr float largest_spread = 0x1p10f;
-    constexpr float least_stretch = 0x1p-4f;
+    constexpr float min_stretch = 0x1p-4f;
     glm::vec3 lengths{};
     glm::mat3 axes;
     for (glm::length_t k = 0; k < 3; ++k) {
@@ -45,7 +45,7 @@ std::optional<InstanceShape> instance_shape(const glm::mat4x3& world_from_object
     const float yz = std::abs(glm::dot(axes[1], axes[2]));
     const float zx = std::abs(glm::dot(axes[2], axes[0]));
     const float around = std::max({xy + zx, xy + yz, yz + zx});
-    if (!(1 - around >= least_stretch))
+    if (!(1 - around >= min_stretch))
         return std::nullopt;
     const float least = std::sqrt(1 - around);
     const float most = std::sqrt(1 + around);

@@ -86,10 +86,10 @@ struct Crossing {
 };
 
 // A hit, or the end of the ray. Where Embree's own distance decides, the intersection is left for later.
-struct Candidate {
+struct HitCandidate {
     TriangleId id;
     const TriangleSet* set = nullptr;  // none: the end of the ray
-    float least_m = 0, most_m = 0;     // order_of lies between them
+    float min_m = 0, max_m = 0;        // order_of lies between them
     bool front = true;                 // the ray met the counter-clockwise side
     std::optional<Intersection> at;    // if worked out; then both are order_of
 };
@@ -101,24 +101,24 @@ struct Candidate {
 }
 
 // How far Embree is asked to look when this is the closest so far.
-[[nodiscard]] inline float limit_of(const Ray& ray, const Candidate& closest) {
-    const float limit_m = closest.most_m + query_slack(ray, closest.most_m);
-    return closest.front ? limit_m : limit_m + plane_slack(ray, closest.most_m);
+[[nodiscard]] inline float limit_of(const Ray& ray, const HitCandidate& closest) {
+    const float limit_m = closest.max_m + query_slack(ray, closest.max_m);
+    return closest.front ? limit_m : limit_m + plane_slack(ray, closest.max_m);
 }
 
 // The closest hit so far. The front of a surface in whose plane the back of another lies is what a ray meets
 // of both, whichever rounding makes the closer one: the walls of rooms touch that way. So as long as the
 // closest is a back, the closest front behind it is kept as well.
 struct Closest {
-    Candidate hit;                   // before there is one: the end of the ray
-    std::optional<Candidate> front;  // says something only while `hit` is a back
+    HitCandidate hit;                   // before there is one: the end of the ray
+    std::optional<HitCandidate> front;  // says something only while `hit` is a back
 
     // Where a closer one goes, which is at most so far.
-    [[nodiscard]] Candidate& place_of_closer(bool is_front, float most_m, const Ray& ray) {
+    [[nodiscard]] HitCandidate& place_of_closer(bool is_front, float max_m, const Ray& ray) {
         if (is_front || !hit.front)
             return hit;
         front.reset();
-        if (hit.set != nullptr && hit.least_m <= most_m + plane_slack(ray, most_m))
+        if (hit.set != nullptr && hit.min_m <= max_m + plane_slack(ray, max_m))
             front = hit;
         return hit;
     }

@@ -12,15 +12,15 @@
 namespace drtv::trace {
 namespace {
 
-Intersection intersection_of(const Candidate& hit, const Scene& scene, const Ray& ray) {
+Intersection intersection_of(const HitCandidate& hit, const Scene& scene, const Ray& ray) {
     // It is met: what was sure lies ahead of the start by more than Embree's rays were moved beside the line.
     return hit.at ? *hit.at
                   : *intersect(
                         ray, scene.world_from_object(hit.id.instance), corners_of(*hit.set, hit.id.triangle));
 }
 
-float order_of(const Candidate& hit, const Intersection& at) {
-    return hit.at ? hit.most_m : static_cast<float>(at.distance_m);
+float order_of(const HitCandidate& hit, const Intersection& at) {
+    return hit.at ? hit.max_m : static_cast<float>(at.distance_m);
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ const TriangleSet& Scene::set_of(std::uint32_t instance, std::uint32_t embree_ge
 std::optional<Hit> Scene::closest(const Ray& ray) const {
     Query query(*this, {&ray, 1});
     Closest& closest = query.closest;
-    closest.hit.least_m = closest.hit.most_m = ray.far_m;
+    closest.hit.min_m = closest.hit.max_m = ray.far_m;
     const Sides sides(ray);
     for (int side = 0; side < sides.count; ++side) {
         RTCRayHit r;
@@ -61,7 +61,7 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
 
 // Of a thing of two skins that chance decides of, the coin has fallen for the back. It is one thing: its
 // front is met wherever that is, there or not.
-std::optional<Hit> Scene::front_skin(const Candidate& back, const Intersection& at, const Ray& ray) const {
+std::optional<Hit> Scene::front_skin(const HitCandidate& back, const Intersection& at, const Ray& ray) const {
     if (is_two_sided(*back.set->material, instances_[back.id.instance].role))
         return std::nullopt;
     const float back_m = static_cast<float>(at.distance_m);
@@ -69,7 +69,7 @@ std::optional<Hit> Scene::front_skin(const Candidate& back, const Intersection& 
     for (const Crossing& crossing : all_crossings(longer, Collected::partly_there)) {
         if (!meets_front(crossing.id.instance, crossing.at, ray) || !in_one_plane(ray, at, crossing.at))
             continue;
-        Candidate front;
+        HitCandidate front;
         front.id = crossing.id;
         front.set = &set_of(crossing.id.instance, crossing.id.set);
         return hit_at(front, crossing.at, ray);
@@ -77,7 +77,7 @@ std::optional<Hit> Scene::front_skin(const Candidate& back, const Intersection& 
     return std::nullopt;
 }
 
-Hit Scene::hit_at(const Candidate& candidate, const Intersection& at, const Ray& ray) const {
+Hit Scene::hit_at(const HitCandidate& candidate, const Intersection& at, const Ray& ray) const {
     const double double_area_m2 = glm::length(at.normal);
     const double towards = glm::dot(at.normal, glm::dvec3(ray.direction)) < 0 ? 1 : -1;
     return {static_cast<float>(at.distance_m),

@@ -7,6 +7,7 @@
 #include "bakerd/trace/ray.h"
 #include "bakerd/trace/surface.h"
 #include "bakerd/trace/triangle.h"
+#include "placement/crossings.h"
 
 #include <glm/mat4x3.hpp>
 #include <glm/vec2.hpp>
@@ -26,7 +27,7 @@ struct RTCSceneTy;
 namespace drtv::trace {
 
 // query.h
-struct Candidate;
+struct HitCandidate;
 enum class Collected : std::uint8_t;
 struct Crossing;
 struct Query;
@@ -48,29 +49,10 @@ struct Hit {
     const TriangleSet* set = nullptr;  // of the triangle
 };
 
-// One crossing of a vertical line. A closed part that looks outwards has one front, whatever its material
-// says.
-struct ColumnHit {
-    float z_m = 0;
-    bool up_facing = false;    // seen from above it is a front, or it has two fronts
-    bool down_facing = false;  // seen from below it is a front, or it has two fronts
-    bool wound_up = false;     // seen from above its corners are counter-clockwise
-    bool body = false;         // of a closed part whose fronts look outwards
-
-    auto operator<=>(const ColumnHit&) const = default;
-};
-
-// One crossing of a ray with a static object, or with what bounds a volume.
-struct SideHit {
-    float distance_m = 0;
-    bool front = false;  // the ray met the counter-clockwise side
-    bool sheet = false;  // it has two fronts, and is of no closed part that looks outwards
-};
-
-// Square of the world, metres.
-struct Region {
-    glm::vec2 low;
-    glm::vec2 high;
+// Of the world, metres; x east, y north.
+struct WorldRectangle {
+    glm::vec2 low{};
+    glm::vec2 high{};
 };
 
 // Whether a scene has triangles of its own of an object with these bounds, instead of an instance of its
@@ -81,7 +63,7 @@ class Scene {
   public:
     // All objects whose bounds come within `reach_m` of the region.
     [[nodiscard]] static std::shared_ptr<const Scene> build(MapGeometry& geometry,
-                                                            const Region& region,
+                                                            const WorldRectangle& region,
                                                             float reach_m);
     ~Scene();
     Scene(const Scene&) = delete;
@@ -109,9 +91,9 @@ class Scene {
 
     // All crossings of the vertical line at (x, y) with static objects, from the top down; those at one
     // height in an order of their own, not the map's. `hits` is replaced.
-    void column(glm::vec2 at, std::vector<ColumnHit>& hits) const;
+    void column(glm::vec2 at, std::vector<placement::ColumnHit>& hits) const;
     // The same, and with all that bounds volumes. The line leans: it passes 3 cm beside the point at most.
-    void column_of_spaces(glm::vec2 at, std::vector<ColumnHit>& hits) const;
+    void column_of_spaces(glm::vec2 at, std::vector<placement::ColumnHit>& hits) const;
 
     // The object that the point is inside of: some closed part whose fronts look outwards has a winding
     // number above 0 there. A closed part that looks inwards, as a room's walls do, takes away from those
@@ -119,7 +101,7 @@ class Scene {
     [[nodiscard]] std::optional<std::uint32_t> closed_around(const glm::vec3& point) const;
 
     // All crossings with static objects and with what bounds a volume, in no particular order.
-    [[nodiscard]] std::vector<SideHit> sides_met(const Ray& ray) const;
+    [[nodiscard]] std::vector<placement::Side> sides_met(const Ray& ray) const;
 
     // Whether something static that is there everywhere stands in the way: it separates what lies before and
     // behind it. Leaves, glass and fences never do.
@@ -127,13 +109,13 @@ class Scene {
 
     // The object of which some triangle comes within so much of the point, static or bounding a volume; what
     // alpha takes away counts as there. Of several the nearest, then the first of the map.
-    [[nodiscard]] std::optional<std::uint32_t> wall_within(const glm::vec3& point, float most_m) const;
+    [[nodiscard]] std::optional<std::uint32_t> wall_within(const glm::vec3& point, float max_m) const;
 
     // To the nearest surface of any kind, at most `most_m`; what alpha takes away counts as there.
-    [[nodiscard]] float distance_to_surface(const glm::vec3& point, float most_m) const;
+    [[nodiscard]] float distance_to_surface(const glm::vec3& point, float max_m) const;
 
     // World bounds of vegetation that overlap the region (its bounds), in the map's order.
-    [[nodiscard]] std::vector<map::Bounds> vegetation_bounds(const Region& region) const;
+    [[nodiscard]] std::vector<map::Bounds> vegetation_bounds(const WorldRectangle& region) const;
 
     [[nodiscard]] const map::Bounds& bounds() const { return bounds_; }
     [[nodiscard]] std::size_t object_count() const { return instances_.size(); }
@@ -170,13 +152,16 @@ class Scene {
     void add_instance(std::uint32_t object, const MeshBvh& bvh);
     void add_in_world_space(std::uint32_t object,
                             std::shared_ptr<const ClosedParts> closed,
-                            const Region& region,
+                            const WorldRectangle& region,
                             float reach_m);
     [[nodiscard]] bool is_met(Query& query, const Ray& ray) const;
     [[nodiscard]] bool ends_behind(const Ray& ray) const;
-    void column(glm::vec2 at, const glm::vec3& down, Collected wanted, std::vector<ColumnHit>& hits) const;
+    void column(glm::vec2 at,
+                const glm::vec3& down,
+                Collected wanted,
+                std::vector<placement::ColumnHit>& hits) const;
     struct Nearest;
-    [[nodiscard]] Nearest nearest_surface(const glm::vec3& point, float most_m, bool only_walls) const;
+    [[nodiscard]] Nearest nearest_surface(const glm::vec3& point, float max_m, bool only_walls) const;
     struct Around;
     [[nodiscard]] map::Bounds bounds_of(std::uint32_t instance, std::uint32_t part) const;
     [[nodiscard]] const ClosedParts* closed_of(std::uint32_t instance) const {
@@ -188,10 +173,10 @@ class Scene {
     [[nodiscard]] bool is_covered(const Crossing& back,
                                   const std::vector<Crossing>& crossings,
                                   const Ray& ray) const;
-    [[nodiscard]] std::optional<Hit> front_skin(const Candidate& back,
+    [[nodiscard]] std::optional<Hit> front_skin(const HitCandidate& back,
                                                 const Intersection& at,
                                                 const Ray& ray) const;
-    [[nodiscard]] Hit hit_at(const Candidate& candidate, const Intersection& at, const Ray& ray) const;
+    [[nodiscard]] Hit hit_at(const HitCandidate& candidate, const Intersection& at, const Ray& ray) const;
     [[nodiscard]] std::vector<Crossing> all_crossings(const Ray& ray, Collected wanted) const;
     [[nodiscard]] const TriangleSet& set_of(std::uint32_t instance, std::uint32_t embree_geometry) const;
 

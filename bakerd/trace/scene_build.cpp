@@ -9,7 +9,7 @@
 namespace drtv::trace {
 namespace {
 
-bool overlaps(const map::Bounds& bounds, const Region& region, float margin_m) {
+bool overlaps(const map::Bounds& bounds, const WorldRectangle& region, float margin_m) {
     return bounds.low.x <= region.high.x + margin_m && bounds.high.x >= region.low.x - margin_m &&
            bounds.low.y <= region.high.y + margin_m && bounds.high.y >= region.low.y - margin_m;
 }
@@ -30,7 +30,9 @@ bool is_kept_in_world_space(const map::Bounds& bounds) {
     return std::max(bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y) > side_m;
 }
 
-std::shared_ptr<const Scene> Scene::build(MapGeometry& geometry, const Region& region, float reach_m) {
+std::shared_ptr<const Scene> Scene::build(MapGeometry& geometry,
+                                          const WorldRectangle& region,
+                                          float reach_m) {
     std::shared_ptr<Scene> scene(new Scene);
     scene->device_ = geometry.device();
     scene->map_ = geometry.map();
@@ -83,7 +85,7 @@ void Scene::add_instance(std::uint32_t object, const MeshBvh& bvh) {
 
 void Scene::add_in_world_space(std::uint32_t object,
                                std::shared_ptr<const ClosedParts> closed,
-                               const Region& region,
+                               const WorldRectangle& region,
                                float reach_m) {
     const map::Object& placed = map_->objects[object];
     const glm::dmat4x3 world_from_object(placed.world_from_object);
@@ -114,7 +116,7 @@ Scene::~Scene() {
         rtcReleaseScene(handle_);
 }
 
-std::vector<map::Bounds> Scene::vegetation_bounds(const Region& region) const {
+std::vector<map::Bounds> Scene::vegetation_bounds(const WorldRectangle& region) const {
     std::vector<map::Bounds> found;
     for (const Instance& instance : instances_) {
         const map::Object& object = map_->objects[instance.object];

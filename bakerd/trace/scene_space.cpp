@@ -30,11 +30,11 @@ double volume_of(const map::Bounds& bounds, const glm::mat4x3& world_from_object
 
 }  // namespace
 
-void Scene::column(glm::vec2 at, std::vector<ColumnHit>& hits) const {
+void Scene::column(glm::vec2 at, std::vector<placement::ColumnHit>& hits) const {
     column(at, glm::vec3(0, 0, -1), Collected::of_static, hits);
 }
 
-void Scene::column_of_spaces(glm::vec2 at, std::vector<ColumnHit>& hits) const {
+void Scene::column_of_spaces(glm::vec2 at, std::vector<placement::ColumnHit>& hits) const {
     // Of a line along an axis four are asked (Sides), which is not worth it here.
     column(at, glm::vec3(0x1p-19f, 0x1.8p-20f, -1), Collected::of_spaces, hits);
 }
@@ -42,7 +42,7 @@ void Scene::column_of_spaces(glm::vec2 at, std::vector<ColumnHit>& hits) const {
 void Scene::column(glm::vec2 at,
                    const glm::vec3& down,
                    Collected wanted,
-                   std::vector<ColumnHit>& hits) const {
+                   std::vector<placement::ColumnHit>& hits) const {
     hits.clear();
     // The line's ends are constants: were they taken from the scene, its rounding would depend on far
     // objects.
@@ -147,8 +147,8 @@ std::optional<std::uint32_t> Scene::closed_around(const glm::vec3& point) const 
     return closed_around(Ray{point, up[2], far_m}) ? (first ? first : second) : std::nullopt;
 }
 
-std::vector<SideHit> Scene::sides_met(const Ray& ray) const {
-    std::vector<SideHit> sides;
+std::vector<placement::Side> Scene::sides_met(const Ray& ray) const {
+    std::vector<placement::Side> sides;
     for (const Crossing& crossing : all_crossings(ray, Collected::of_spaces)) {
         const TriangleSet& set = set_of(crossing.id.instance, crossing.id.set);
         sides.push_back({static_cast<float>(crossing.at.distance_m),
@@ -171,7 +171,7 @@ struct Scene::Nearest {
 };
 
 // At most `most_m` away.
-Scene::Nearest Scene::nearest_surface(const glm::vec3& point, float most_m, bool only_walls) const {
+Scene::Nearest Scene::nearest_surface(const glm::vec3& point, float max_m, bool only_walls) const {
     struct Search {
         const Scene& scene;
         Ray from;  // for its start
@@ -179,9 +179,9 @@ Scene::Nearest Scene::nearest_surface(const glm::vec3& point, float most_m, bool
         bool only_walls;
         Nearest nearest;
     };
-    Search search{*this, {point, {}, 0}, point, only_walls, {most_m, std::nullopt}};
+    Search search{*this, {point, {}, 0}, point, only_walls, {max_m, std::nullopt}};
     // Embree rounds: of two that are about as near it must offer both.
-    RTCPointQuery query{point.x, point.y, point.z, 0, most_m + query_slack(search.from, most_m)};
+    RTCPointQuery query{point.x, point.y, point.z, 0, max_m + query_slack(search.from, max_m)};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     const auto look = [](RTCPointQueryFunctionArguments* found) {
@@ -209,12 +209,12 @@ Scene::Nearest Scene::nearest_surface(const glm::vec3& point, float most_m, bool
     return search.nearest;
 }
 
-float Scene::distance_to_surface(const glm::vec3& point, float most_m) const {
-    return nearest_surface(point, most_m, false).distance_m;
+float Scene::distance_to_surface(const glm::vec3& point, float max_m) const {
+    return nearest_surface(point, max_m, false).distance_m;
 }
 
-std::optional<std::uint32_t> Scene::wall_within(const glm::vec3& point, float most_m) const {
-    const Nearest nearest = nearest_surface(point, most_m, true);
+std::optional<std::uint32_t> Scene::wall_within(const glm::vec3& point, float max_m) const {
+    const Nearest nearest = nearest_surface(point, max_m, true);
     return nearest.instance ? std::optional(object_index(*nearest.instance)) : std::nullopt;
 }
 

@@ -26,7 +26,7 @@ constexpr float texels_a_triangle = 16;
 // triangle.
 std::uint32_t mip_level(const map::Texture& texture,
                         const std::array<glm::vec2, 3>& uvs,
-                        const Footprint& footprint) {
+                        const RayFootprint& footprint) {
     const glm::vec2 a = uvs[1] - uvs[0];
     const glm::vec2 b = uvs[2] - uvs[0];
     const float double_texels = std::abs(a.x * b.y - a.y * b.x) * static_cast<float>(texture.width) *
@@ -42,7 +42,7 @@ std::uint32_t mip_level(const map::Texture& texture,
 glm::vec3 filtered(const TrianglePoint& point,
                    const map::TextureView& view,
                    const std::vector<glm::vec2>& uvs,
-                   const Footprint& footprint) {
+                   const RayFootprint& footprint) {
     const map::Texture& texture = point.map.textures[view.texture];
     const glm::uvec3& t = point.corners();
     const std::array<glm::vec2, 3> corners = {
@@ -58,10 +58,10 @@ bool is_leaf(const map::Material& material, map::Role role) {
 
 }  // namespace
 
-float most_scattered(const map::Map& map) {
+float max_scattered(const map::Map& map) {
     std::set<std::pair<std::uint32_t, bool>> seen;  // meshes, as vegetation or not
     std::map<std::uint32_t, glm::vec3> of_textures;
-    float most = least_scattered;
+    float most = min_scattered;
     for (const map::Object& object : map.objects) {
         const bool vegetation = object.role == map::Role::vegetation;
         if (!seen.insert({object.mesh, vegetation}).second)
@@ -102,7 +102,7 @@ float most_scattered(const map::Map& map) {
     return most;
 }
 
-glm::vec3 emission_at(const TrianglePoint& point, const Footprint& footprint) {
+glm::vec3 emission_at(const TrianglePoint& point, const RayFootprint& footprint) {
     const map::Material& material = point.material();
     if (!material.emission_texture.present())
         return material.emission;
@@ -110,7 +110,7 @@ glm::vec3 emission_at(const TrianglePoint& point, const Footprint& footprint) {
            filtered(point, material.emission_texture, point.primitive.emission_uvs, footprint);
 }
 
-Surface surface_at(const TrianglePoint& point, map::Role role, bool front, const Footprint& footprint) {
+Surface surface_at(const TrianglePoint& point, map::Role role, bool front, const RayFootprint& footprint) {
     const map::Primitive& primitive = point.primitive;
     const map::Material& material = point.material();
     if (!front && !is_two_sided(material, role))

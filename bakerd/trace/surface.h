@@ -48,7 +48,7 @@ struct TrianglePoint {
 };
 
 // How a point is looked at.
-struct Footprint {
+struct RayFootprint {
     float double_area_m2;  // twice the triangle's area in the world
     float width_m;         // over which textures are averaged
 };
@@ -83,15 +83,15 @@ enum class Presence : std::uint8_t { nowhere, mixed, whole };
 [[nodiscard]] Surface surface_at(const TrianglePoint& point,
                                  map::Role role,
                                  bool front,
-                                 const Footprint& footprint);
+                                 const RayFootprint& footprint);
 
 // A bound on the share of light that any surface of the map's objects passes on, to both sides together and
 // in whichever channels are most: no step of a path (bake::scatter) multiplies what it brings by more. Below
-// 1, and never 0: of a black map least_scattered.
-inline constexpr float least_scattered = 1 / 16.0f;
-[[nodiscard]] float most_scattered(const map::Map& map);
+// 1, and never 0: of a black map min_scattered.
+inline constexpr float min_scattered = 1 / 16.0f;
+[[nodiscard]] float max_scattered(const map::Map& map);
 
 // Radiance of the triangle's front at a point, nits; as surface_at has it.
-[[nodiscard]] glm::vec3 emission_at(const TrianglePoint& point, const Footprint& footprint);
+[[nodiscard]] glm::vec3 emission_at(const TrianglePoint& point, const RayFootprint& footprint);
 
 }  // namespace drtv::trace

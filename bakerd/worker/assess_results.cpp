@@ -79,8 +79,8 @@ class Assessing {
                 warn(footprint.error());
                 continue;
             }
-            const reuse::Assessment assessment = reuse::assess(
-                *footprint, request_.settings, **changes, request_.settings.tolerance, *map_.world);
+            const reuse::Assessment assessment =
+                reuse::assess(*footprint, request_.settings, **changes, *map_.world);
             if (assessment.verdict == reuse::Verdict::hit)
                 return {assessment.verdict, c, 0, 0, ""};
             const bool near = assessment.verdict == reuse::Verdict::near_hit;
@@ -141,7 +141,7 @@ Assessments assess_results(const AssessRequest& request, const LoadedMap& map, s
 
 tl::expected<reuse::EarlierBake, std::string> read_earlier(const ResultBlobs& earlier,
                                                            map::SectorCoordinate sector,
-                                                           const bake::Settings& settings,
+                                                           const settings::JobSettings& settings,
                                                            const LoadedMap& map,
                                                            store::BlobStore& store) {
     const auto changes = map.changes->map(earlier.inventory);
@@ -158,7 +158,7 @@ tl::expected<reuse::EarlierBake, std::string> read_earlier(const ResultBlobs& ea
         return tl::unexpected(
             fmt::format("sector ({}, {}): the file of an earlier result is not one", sector.i, sector.j));
     reuse::EarlierBake read{std::move(*file), std::move(*footprint), {}};
-    read.assessment = reuse::assess(read.footprint, settings, **changes, settings.tolerance, *map.world);
+    read.assessment = reuse::assess(read.footprint, settings, **changes, *map.world);
     return read;
 }
 

@@ -21,10 +21,11 @@ namespace drtv::worker {
 
 // An earlier result of the sector, held against the map at hand; a sentence when it or its records are lost
 // or damaged. REQUIRES: a FloatMode on this thread.
-[[nodiscard]] tl::expected<reuse::EarlierBake, std::string> read_earlier(const ResultBlobs& earlier,
-                                                                         map::SectorCoordinate sector,
-                                                                         const bake::Settings& settings,
-                                                                         const LoadedMap& map,
-                                                                         store::BlobStore& store);
+[[nodiscard]] tl::expected<reuse::EarlierBake, std::string> read_earlier(
+    const ResultBlobs& earlier,
+    map::SectorCoordinate sector,
+    const settings::JobSettings& settings,
+    const LoadedMap& map,
+    store::BlobStore& store);
 
 }  // namespace drtv::worker

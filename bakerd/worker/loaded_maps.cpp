@@ -31,8 +31,8 @@ MapSummary summary_of(const bake::World& world, const Digest& inventory) {
     return summary;
 }
 
-tl::unexpected<Failure> failed(std::string sentence, bool may_retry) {
-    return tl::unexpected(Failure{std::move(sentence), may_retry});
+tl::unexpected<RequestFailure> failed(std::string sentence, bool may_retry) {
+    return tl::unexpected(RequestFailure{std::move(sentence), may_retry});
 }
 
 }  // namespace

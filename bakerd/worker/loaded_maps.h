@@ -23,7 +23,7 @@ struct LoadedMap {
     std::shared_ptr<ChangesSince> changes;
 };
 
-using LoadResult = tl::expected<LoadedMap, Failure>;
+using LoadResult = tl::expected<LoadedMap, RequestFailure>;
 
 // Thread-safe.
 class LoadedMaps {

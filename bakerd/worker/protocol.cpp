@@ -1,6 +1,8 @@
 // Long because it holds one list of fields per message, and the codec that all of them share.
 #include "bakerd/worker/protocol.h"
 
+#include "settings/table.h"
+
 #include <nlohmann/json.hpp>
 
 #include <concepts>
@@ -17,16 +19,9 @@ using Json = nlohmann::json;
 template <class Self, class Struct>
 concept Is = std::same_as<std::remove_const_t<Self>, Struct>;
 
-void fields(auto& codec, Is<bake::Settings> auto& settings) {
-    codec("rays", settings.rays);
-    codec("bounces", settings.bounces);
-    codec("reach_m", settings.reach_m);
-    codec("min_distance_m", settings.min_distance_m);
-    codec("error", settings.error);
-    codec("local_transfer", settings.local_transfer);
-    codec("local_bounces", settings.local_bounces);
-    codec("local_rays", settings.local_rays);
-    codec("tolerance", settings.tolerance);
+void fields(auto& codec, Is<settings::JobSettings> auto& settings) {
+    for (const settings::Setting& setting : settings::table())
+        settings::visit_value(settings, setting, [&](auto& value) { codec(setting.name, value); });
 }
 
 void fields(auto& codec, Is<map::SectorCoordinate> auto& sector) {
@@ -90,7 +85,7 @@ void fields(auto& codec, Is<Assessments::Sector> auto& sector) {
     codec("reason", sector.reason);
 }
 
-void fields(auto& codec, Is<Assessments::Change> auto& change) {
+void fields(auto& codec, Is<MapChange> auto& change) {
     codec("what", change.what);
     codec("x0", change.bounds.low.x);
     codec("y0", change.bounds.low.y);
@@ -106,7 +101,7 @@ void fields(auto& codec, Is<Assessments> auto& assessments) {
     codec("warnings", assessments.warnings);
 }
 
-void fields(auto& codec, Is<Failure> auto& failure) {
+void fields(auto& codec, Is<RequestFailure> auto& failure) {
     codec("sentence", failure.sentence);
     codec("may_retry", failure.may_retry);
 }
@@ -114,12 +109,12 @@ void fields(auto& codec, Is<Failure> auto& failure) {
 class Writer {
   public:
     template <class Value>
-    void operator()(const char* key, const Value& value) {
+    void operator()(std::string_view key, const Value& value) {
         json_[key] = written(value);
     }
     // Left out where there is none.
     template <class Value>
-    void operator()(const char* key, const std::optional<Value>& value) {
+    void operator()(std::string_view key, const std::optional<Value>& value) {
         if (value)
             json_[key] = written(*value);
     }
@@ -154,11 +149,11 @@ class Reader {
     explicit Reader(const Json& json) : json_(json) {}
 
     template <class Value>
-    void operator()(const char* key, Value& value) {
+    void operator()(std::string_view key, Value& value) {
         read(json_.at(key), value);
     }
     template <class Value>
-    void operator()(const char* key, std::optional<Value>& value) {
+    void operator()(std::string_view key, std::optional<Value>& value) {
         if (json_.contains(key))
             read(json_.at(key), value.emplace());
     }
@@ -220,7 +215,7 @@ constexpr const char* name_of<SectorResult> = "baked";
 template <>
 constexpr const char* name_of<Assessments> = "assessed";
 template <>
-constexpr const char* name_of<Failure> = "failed";
+constexpr const char* name_of<RequestFailure> = "failed";
 
 template <class Message>
 std::string line_of(const Message& message) {

@@ -1,11 +1,11 @@
 // What the daemon asks its workers, and what they answer.
 #pragma once
 
-#include "bakerd/bake/settings.h"
 #include "bakerd/map/digest.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/map/map.h"
 #include "bakerd/reuse/verdict.h"
+#include "settings/bake_settings.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -34,7 +34,7 @@ struct InspectRequest {
 struct BakeRequest {
     Digest manifest;
     map::SectorCoordinate sector;
-    bake::Settings settings;
+    settings::JobSettings settings;
     std::optional<ResultBlobs> earlier;  // of another map, with these settings; what holds of it is reused
 };
 
@@ -45,7 +45,7 @@ struct AssessRequest {
         std::vector<ResultBlobs> candidates;  // the likeliest first
     };
     Digest manifest;
-    bake::Settings settings;
+    settings::JobSettings settings;
     std::vector<Sector> sectors;
 };
 
@@ -72,6 +72,16 @@ struct SectorResult {
         0;  // on how far it is off, where probes of another map's result were reused (reuse/assessment.h)
 };
 
+// Something that is not as it was in the map of a result, with where it is and was.
+struct MapChange {
+    std::string what;
+    map::Bounds bounds;
+
+    bool operator==(const MapChange& other) const {
+        return what == other.what && bounds.low == other.bounds.low && bounds.high == other.bounds.high;
+    }
+};
+
 // Answer to AssessRequest.
 struct Assessments {
     struct Sector {
@@ -81,17 +91,8 @@ struct Assessments {
         float share = 1;     // of its probes, that a rebake has to bake
         std::string reason;  // one sentence; empty of a hit
     };
-    // Something that is not as it was in the map of a result, with where it is and was.
-    struct Change {
-        std::string what;
-        map::Bounds bounds;
-
-        bool operator==(const Change& other) const {
-            return what == other.what && bounds.low == other.bounds.low && bounds.high == other.bounds.high;
-        }
-    };
     std::vector<Sector> sectors;        // in the order of the request
-    std::vector<Change> changes;        // the first of them, without those that stand nowhere
+    std::vector<MapChange> changes;     // the first of them, without those that stand nowhere
     std::vector<std::string> warnings;  // of records that cannot be used, one sentence each
 };
 
@@ -99,7 +100,7 @@ struct Assessments {
 inline constexpr std::size_t max_warnings = 20;
 
 // Answer to any request that could not be done.
-struct Failure {
+struct RequestFailure {
     std::string sentence;
     bool may_retry = false;  // a full disk may be better next time, a bad map will not
 };
@@ -112,7 +113,7 @@ struct Request {
 
 struct Answer {
     std::uint64_t id = 0;
-    std::variant<MapSummary, SectorResult, Assessments, Failure> what;
+    std::variant<MapSummary, SectorResult, Assessments, RequestFailure> what;
 };
 
 }  // namespace drtv::worker

@@ -39,10 +39,10 @@ class Worker {
         try {
             answer.what = std::visit([this](const auto& what) { return perform(what); }, request.what);
         } catch (const std::bad_alloc&) {
-            answer.what = Failure{"the worker has not enough memory", true};
+            answer.what = RequestFailure{"the worker has not enough memory", true};
         } catch (const std::exception& exception) {
             answer.what =
-                Failure{fmt::format("the worker met an unexpected error: {}", exception.what()), true};
+                RequestFailure{fmt::format("the worker met an unexpected error: {}", exception.what()), true};
         }
         const std::string line = encode(answer);
         const std::lock_guard lock(out_mutex_);
@@ -86,18 +86,18 @@ class Worker {
                 spdlog::warn("{}", read.error());  // all of it is baked then
         }
         auto rebake = reuse::bake_and_record(
-            *map.world, request.sector, request.settings, earlier ? &*earlier : nullptr);
+            *map.world, request.sector, request.settings.bake, earlier ? &*earlier : nullptr);
         if (!rebake)
-            return Failure{rebake.error(), false};
+            return RequestFailure{rebake.error(), false};
         bake::BakedSector& baked = rebake->baked;
         const auto file = bake::encode_sector(baked.sector, baked.warnings);
         if (!file)
-            return Failure{file.error(), false};
+            return RequestFailure{file.error(), false};
         const std::vector<std::uint8_t> footprint = reuse::encode_footprint(rebake->footprint);
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
         const auto blobs = store_result(*file, footprint, map);
         if (!blobs)
-            return Failure{blobs.error().message, true};
+            return RequestFailure{blobs.error().message, true};
         SectorResult result;
         result.blobs = *blobs;
         result.file_bytes = static_cast<std::int64_t>(file->size());
@@ -147,25 +147,20 @@ std::FILE* take_standard_output() {
     return ::fdopen(fd, "w");
 }
 
-int complain(const std::string& sentence) {
-    spdlog::error("{}", sentence);
-    return 1;
-}
-
 }  // namespace
 
-int run_worker(const Options& options) {
+tl::unexpected<std::string> run_worker(const Options& options) {
     // Dies with the daemon, whatever kills it.
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     std::FILE* out = take_standard_output();
     auto store = store::BlobStore::open(options.blob_folder);
     if (!store)
-        return complain(store.error().message);
+        return tl::unexpected(store.error().message);
     auto device = trace::Device::open();
     if (!device)
-        return complain(device.error());
+        return tl::unexpected(device.error());
     if (out == nullptr)
-        return complain("cannot take over standard output");
+        return tl::unexpected(std::string("cannot take over standard output"));
     const int threads =
         options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
     // One more than the arena's: this thread, which only reads.
@@ -178,7 +173,8 @@ int run_worker(const Options& options) {
     while (std::getline(std::cin, line)) {
         const auto request = decode_request(line);
         if (!request)
-            return complain("the worker was sent a line it does not understand: " + line.substr(0, 200));
+            return tl::unexpected("the worker was sent a line it does not understand: " +
+                                  line.substr(0, 200));
         arena.enqueue(in_flight.defer([&worker, request = *request] { worker.answer(request); }));
     }
     // The daemon has gone or wants no more: what is left has no reader.

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include <tl/expected.hpp>
+
 namespace drtv::worker {
 
 struct Options {
@@ -11,8 +13,9 @@ struct Options {
     int threads = 0;  // 0: as many as the machine has
 };
 
-// Gives the process's exit status. Standard output is the protocol's alone: whatever libraries print goes to
+// Ends the process when its input ends; gives a sentence where it cannot begin, or is sent what it does not
+// understand. Standard output is the protocol's alone: whatever libraries print goes to
 // standard error.
-[[nodiscard]] int run_worker(const Options& options);
+[[nodiscard]] tl::unexpected<std::string> run_worker(const Options& options);
 
 }  // namespace drtv::worker

@@ -1,7 +1,5 @@
 #include "files.h"
 
-#include "exit_code.h"
-
 #include <drtv/read.h>
 
 #include <unistd.h>
@@ -39,8 +37,13 @@ std::optional<std::size_t> read_head(const std::string& path, std::span<std::uin
     return size;
 }
 
-std::string reason() {
-    return std::strerror(errno);
+// "cannot read a.drtv: No such file or directory", as `errno` tells it.
+tl::unexpected<cli::Failure> cannot(const std::string& verb, const std::string& path) {
+    return cli::fail(cli::exit_unreadable, "cannot " + verb + " " + path + ": " + std::strerror(errno));
+}
+
+tl::unexpected<cli::Failure> cannot_write(const std::string& path, const std::string& why) {
+    return cli::fail(cli::exit_unreadable, "cannot write " + path + ": " + why);
 }
 
 // False where not all could be written; `errno` tells why.
@@ -52,13 +55,13 @@ bool write_all(std::FILE* file, const FileBytes& bytes) {
 
 }  // namespace
 
-FileRead read_file(const std::string& path) {
+cli::Result<FileBytes> read_file(const std::string& path) {
     std::error_code code;
     if (fs::is_directory(path, code))
-        return {{}, path + " is a folder, not a file"};
+        return cli::fail(cli::exit_unreadable, path + " is a folder, not a file");
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr)
-        return {{}, "cannot read " + path + ": " + reason()};
+        return cannot("read", path);
     FileBytes bytes;
     std::uint8_t buffer[65536];
     for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) {
@@ -70,35 +73,35 @@ FileRead read_file(const std::string& path) {
     const bool failed = std::ferror(file) != 0;
     std::fclose(file);
     if (failed)
-        return {{}, "cannot read " + path + ": " + reason()};
-    return {std::move(bytes), {}};
+        return cannot("read", path);
+    return bytes;
 }
 
 namespace {
 
 // Reads to the end. REQUIRES: `file` is open.
-TextRead read_rest(std::FILE* file, const std::string& name) {
-    TextRead read;
+cli::Result<std::string> read_rest(std::FILE* file, const std::string& name) {
+    std::string text;
     char buffer[65536];
     for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
-        read.text.append(buffer, n);
+        text.append(buffer, n);
     if (std::ferror(file) != 0)
-        read.error = "cannot read " + name + ": " + reason();
-    return read;
+        return cannot("read", name);
+    return text;
 }
 
 }  // namespace
 
-TextRead read_text(const std::string& path) {
+cli::Result<std::string> read_text(const std::string& path) {
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr)
-        return {{}, "cannot read " + path + ": " + reason()};
-    TextRead read = read_rest(file, path);
+        return cannot("read", path);
+    auto read = read_rest(file, path);
     std::fclose(file);
     return read;
 }
 
-TextRead read_standard_input() {
+cli::Result<std::string> read_standard_input() {
     return read_rest(stdin, "standard input");
 }
 
@@ -113,44 +116,44 @@ std::optional<std::pair<std::int32_t, std::int32_t>> sector_of_file(const std::s
     return sector;
 }
 
-std::string write_file(const std::string& link, const FileBytes& bytes) {
+cli::Result<void> write_file(const std::string& link, const FileBytes& bytes) {
     // The file behind a link is replaced, not the link; a device or a pipe is not replaced at all.
     std::error_code code;
     const bool is_link = fs::is_symlink(link, code);
     const std::string path = is_link ? fs::weakly_canonical(link, code).string() : link;
     const fs::file_status status = fs::status(path, code);
     if (fs::exists(status) && !fs::is_regular_file(status))
-        return "cannot write " + link + ": it is not a regular file";
+        return cannot_write(link, "it is not a regular file");
     const std::string temporary = path + ".tmp" + std::to_string(::getpid());
     std::FILE* file = std::fopen(temporary.c_str(), "wb");
     if (file == nullptr)
-        return "cannot write " + path + ": " + reason();
+        return cannot("write", path);
     if (write_all(file, bytes) && std::rename(temporary.c_str(), path.c_str()) == 0)
         return {};
-    const std::string error = "cannot write " + path + ": " + reason();
+    const auto failure = cannot("write", path);
     std::remove(temporary.c_str());
-    return error;
+    return failure;
 }
 
-std::string png_target_problem(const std::string& path) {
+cli::Result<void> check_png_target(const std::string& path) {
     constexpr std::array<std::uint8_t, 8> signature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     std::error_code code;
     if (fs::is_directory(path, code))
-        return "cannot write " + path + ": it is a folder";
+        return cannot_write(path, "it is a folder");
     const fs::path folder = fs::absolute(path, code).parent_path();
     if (!fs::is_directory(folder, code))
-        return "cannot write " + path + ": there is no folder " + folder.string();
+        return cannot_write(path, "there is no folder " + folder.string());
     if (!fs::is_regular_file(path, code) || fs::file_size(path, code) == 0)
         return {};
     std::array<std::uint8_t, signature.size()> head{};
     const std::optional<std::size_t> size = read_head(path, head);
-    const bool is_png = size == head.size() && head == signature;
-    return !size || is_png ? std::string() : path + " is there and no PNG file: it is not replaced";
+    if (size && (size != head.size() || head != signature))
+        return cli::fail(cli::exit_unreadable, path + " is there and no PNG file: it is not replaced");
+    return {};
 }
 
-std::string write_png_file(const std::string& path, const FileBytes& png) {
-    const std::string problem = png_target_problem(path);
-    return problem.empty() ? write_file(path, png) : problem;
+cli::Result<void> write_png_file(const std::string& path, const FileBytes& png) {
+    return check_png_target(path).and_then([&] { return write_file(path, png); });
 }
 
 std::string format_version(std::span<const std::uint8_t> bytes) {
@@ -162,13 +165,11 @@ std::string format_version(std::span<const std::uint8_t> bytes) {
     return number(4) + "." + number(6);
 }
 
-std::optional<FilePaths> sector_files(const std::string& path) {
+cli::Result<FilePaths> sector_files(const std::string& path) {
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
-    if (!fs::exists(status)) {
-        complain((path.empty() ? "\"\"" : path) + " does not exist");
-        return std::nullopt;
-    }
+    if (!fs::exists(status))
+        return cli::fail(cli::exit_unreadable, (path.empty() ? "\"\"" : path) + " does not exist");
     if (!fs::is_directory(status))
         return FilePaths{path};
     FilePaths files;
@@ -178,14 +179,10 @@ std::optional<FilePaths> sector_files(const std::string& path) {
         if (entry->path().extension() == ".drtv" && entry->is_regular_file(ignored))
             files.push_back(entry->path().string());
     }
-    if (code) {
-        complain("cannot read the folder " + path + ": " + code.message());
-        return std::nullopt;
-    }
-    if (files.empty()) {
-        complain("the folder " + path + " holds no .drtv file");
-        return std::nullopt;
-    }
+    if (code)
+        return cli::fail(cli::exit_unreadable, "cannot read the folder " + path + ": " + code.message());
+    if (files.empty())
+        return cli::fail(cli::exit_unreadable, "the folder " + path + " holds no .drtv file");
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -194,33 +191,27 @@ namespace {
 
 // What `open(bytes, opened)` makes of a file's bytes.
 template <class Opened, class Open>
-std::optional<Opened> opened_file(const std::string& path, int& exit_code, const Open& open) {
-    FileRead file = read_file(path);
-    if (!file.ok()) {
-        complain(file.error);
-        exit_code = exit_unreadable;
-        return std::nullopt;
-    }
-    std::optional<Opened> opened(std::in_place);
-    if (const ReadStatus status = open(file.bytes, *opened); !status.ok()) {
-        complain(path + ": " + status.message);
-        exit_code = exit_invalid;
-        return std::nullopt;
-    }
+cli::Result<Opened> opened_file(const std::string& path, const Open& open) {
+    auto file = read_file(path);
+    if (!file)
+        return tl::unexpected(file.error());
+    Opened opened;
+    if (const ReadStatus status = open(*file, opened); !status.ok())
+        return cli::fail(cli::exit_invalid, path + ": " + status.message);
     return opened;
 }
 
 }  // namespace
 
-std::optional<RawSector> load_raw_sector(const std::string& path, int& exit_code) {
-    return opened_file<RawSector>(path, exit_code, [](const FileBytes& file, RawSector& sector) {
+cli::Result<RawSector> load_raw_sector(const std::string& path) {
+    return opened_file<RawSector>(path, [](const FileBytes& file, RawSector& sector) {
         const ReadStatus status = unpack_sector(file, sector.bytes);
         return status.ok() ? open_sector(sector.bytes, sector.view) : status;
     });
 }
 
-std::optional<Sector> load_sector(const std::string& path, int& exit_code, FileBytes* bytes) {
-    return opened_file<Sector>(path, exit_code, [bytes](FileBytes& file, Sector& sector) {
+cli::Result<Sector> load_sector(const std::string& path, FileBytes* bytes) {
+    return opened_file<Sector>(path, [bytes](FileBytes& file, Sector& sector) {
         const ReadStatus status = read_sector(file, sector);
         if (status.ok() && bytes != nullptr)
             *bytes = std::move(file);

@@ -1,6 +1,6 @@
 #include "light_options.h"
 
-#include "option_checks.h"
+#include "cli/option_checks.h"
 
 namespace drtv::kit {
 
@@ -34,7 +34,7 @@ void add_light(CLI::App& command, LightRequest& light) {
         ->allow_extra_args(false)
         ->type_name("NAME=r,g,b");
     command.add_option("--mode", light.mode, "accurate, or literal: the talk's code")
-        ->check(one_of({"literal", "accurate"}))
+        ->check(cli::one_of({"literal", "accurate"}))
         ->capture_default_str();
 }
 

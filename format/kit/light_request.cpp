@@ -1,6 +1,5 @@
 #include "light_request.h"
 
-#include "exit_code.h"
 #include "files.h"
 #include "number_list.h"
 
@@ -16,135 +15,136 @@ class Reader {
   public:
     Reader(const LightRequest& request, const std::string& command) : request_(request), command_(command) {}
 
-    // Gives the exit code.
-    int read(RequestedLight& to) const {
-        if (request_.gradients && !request_.time) {
-            refuse("--gradients goes with --time");
-            return exit_usage;
-        }
+    cli::Result<void> read(RequestedLight& to) const {
+        if (request_.gradients && !request_.time)
+            return refuse("--gradients goes with --time");
         to.light.mode = request_.mode == "literal" ? RelightMode::literal : RelightMode::accurate;
-        if (request_.time) {
-            if (const int exit_code = read_day(to); exit_code != exit_valid)
-                return exit_code;
-        }
-        const bool read =
-            (request_.time || read_sun_and_sky(to.light)) && read_lamps(to.lamps) && read_groups(to);
-        return read ? exit_valid : exit_usage;
+        auto read = request_.time ? read_day(to) : read_sun_and_sky(to.light);
+        return read.and_then([&] { return read_lamps(to.lamps); }).and_then([&] { return read_groups(to); });
     }
 
   private:
-    bool refuse(const std::string& sentence) const {
-        complain(command_ + ": " + sentence);
-        return false;
+    using Read = cli::Result<void>;
+    using Numbers = std::vector<double>;
+
+    tl::unexpected<cli::Failure> refuse(const std::string& sentence) const {
+        return cli::fail(cli::exit_usage, command_ + ": " + sentence);
     }
 
-    // False, and a complaint, where the option is given and is not `count` numbers; `numbers` stays empty
-    // where it is not given.
-    bool read_numbers(const std::optional<std::string>& text,
-                      const char* option,
-                      std::size_t count,
-                      const char* form,
-                      std::vector<double>& numbers) const {
+    // None where the option is not given.
+    cli::Result<Numbers> read_numbers(const std::optional<std::string>& text,
+                                      const char* option,
+                                      std::size_t count,
+                                      const char* form) const {
         if (!text)
-            return true;
+            return Numbers();
         const auto read = number_list(*text, count);
         if (!read)
             return refuse(std::string(option) + " takes " + form + ", not \"" + *text + "\"");
-        numbers = *read;
-        return true;
+        return *read;
     }
 
-    bool none_below_zero(const std::vector<double>& numbers, const char* option) const {
+    Read none_below_zero(const Numbers& numbers, const char* option) const {
         const auto low = std::find_if(numbers.begin(), numbers.end(), [](double n) { return n < 0; });
         if (low == numbers.end())
-            return true;
+            return {};
         std::array<char, 32> text{};
         std::snprintf(text.data(), text.size(), "%g", *low);
         return refuse(std::string(option) + " takes light of at least 0, not " + text.data());
     }
 
-    bool read_sun_and_sky(SceneLight& light) const {
-        std::vector<double> sun, direction, sky, colours;
-        const bool read = read_numbers(request_.sun, "--sun", 3, "r,g,b", sun) &&
-                          read_numbers(request_.sun_direction, "--sun-direction", 3, "x,y,z", direction) &&
-                          read_numbers(request_.sky, "--sky", 3, "r,g,b", sky) &&
-                          read_numbers(request_.sky_colours,
-                                       "--sky-colours",
-                                       9,
-                                       "nine numbers (zenith, horizon, sun side)",
-                                       colours);
-        if (!read || !none_below_zero(sun, "--sun") || !none_below_zero(sky, "--sky") ||
-            !none_below_zero(colours, "--sky-colours"))
-            return false;
+    // Numbers of light.
+    cli::Result<Numbers> read_light(const std::optional<std::string>& text,
+                                    const char* option,
+                                    std::size_t count,
+                                    const char* form) const {
+        auto numbers = read_numbers(text, option, count, form);
+        if (numbers) {
+            if (auto checked = none_below_zero(*numbers, option); !checked)
+                return tl::unexpected(checked.error());
+        }
+        return numbers;
+    }
+
+    Read read_sun_and_sky(SceneLight& light) const {
+        const auto sun = read_light(request_.sun, "--sun", 3, "r,g,b");
+        if (!sun)
+            return tl::unexpected(sun.error());
+        const auto direction = read_numbers(request_.sun_direction, "--sun-direction", 3, "x,y,z");
+        if (!direction)
+            return tl::unexpected(direction.error());
+        const auto sky = read_light(request_.sky, "--sky", 3, "r,g,b");
+        if (!sky)
+            return tl::unexpected(sky.error());
+        const auto colours =
+            read_light(request_.sky_colours, "--sky-colours", 9, "nine numbers (zenith, horizon, sun side)");
+        if (!colours)
+            return tl::unexpected(colours.error());
         Float3 to_sun{};
-        if (!direction.empty()) {
-            to_sun = float3_of(direction.data());
+        if (!direction->empty()) {
+            to_sun = float3_of(direction->data());
             if (to_sun == Float3{})
                 return refuse("--sun-direction has no length");
         }
-        if (!sun.empty())
-            light.sun = {float3_of(sun.data()), to_sun};
-        if (!sky.empty())
-            light.sky = constant_sky(float3_of(sky.data()));
-        if (!colours.empty()) {
-            const double* numbers = colours.data();
+        if (!sun->empty())
+            light.sun = {float3_of(sun->data()), to_sun};
+        if (!sky->empty())
+            light.sky = constant_sky(float3_of(sky->data()));
+        if (!colours->empty()) {
+            const double* numbers = colours->data();
             light.sky =
                 gradient_sky({float3_of(numbers), float3_of(numbers + 3), float3_of(numbers + 6)}, to_sun);
         }
-        return true;
+        return {};
     }
 
-    // The day at its time. Gives the exit code.
-    int read_day(RequestedLight& to) const {
+    // The day at its time.
+    Read read_day(RequestedLight& to) const {
         double hours = 0;
-        if (!parse_time(*request_.time, hours)) {
-            refuse("--time takes a time of day such as 14:00, not \"" + *request_.time + "\"");
-            return exit_usage;
-        }
+        if (!parse_time(*request_.time, hours))
+            return refuse("--time takes a time of day such as 14:00, not \"" + *request_.time + "\"");
         if (request_.gradients) {
-            const TextRead file = read_text(*request_.gradients);
-            if (!file.error.empty()) {
-                complain(file.error);
-                return exit_unreadable;
-            }
-            if (const std::string error = DayFile::read(file.text, to.day); !error.empty()) {
-                complain(*request_.gradients + ": " + error);
-                return exit_invalid;
-            }
+            const auto text = read_text(*request_.gradients);
+            if (!text)
+                return tl::unexpected(text.error());
+            auto day = DayFile::read(*text);
+            if (!day)
+                return cli::fail(cli::exit_invalid, *request_.gradients + ": " + day.error());
+            to.day = std::move(*day);
         }
         const Day& day = to.day.day();
         to.groups.resize(day.groups.size());
         to.light = light_of_day(day, hours, to.light.mode, to.groups);
-        return exit_valid;
+        return {};
     }
 
-    bool read_lamps(std::vector<PointLight>& lamps) const {
+    Read read_lamps(std::vector<PointLight>& lamps) const {
         for (const std::string& text : request_.lights) {
-            std::vector<double> numbers;
-            if (!read_numbers(text, "--light", 6, "x,y,z,r,g,b", numbers))
-                return false;
-            const std::vector<double> colour(numbers.begin() + 3, numbers.end());
-            if (!none_below_zero(colour, "--light"))
-                return false;
-            lamps.push_back({{numbers[0], numbers[1], numbers[2]}, float3_of(colour.data())});
+            const auto numbers = read_numbers(text, "--light", 6, "x,y,z,r,g,b");
+            if (!numbers)
+                return tl::unexpected(numbers.error());
+            const Numbers colour(numbers->begin() + 3, numbers->end());
+            if (auto checked = none_below_zero(colour, "--light"); !checked)
+                return checked;
+            lamps.push_back({{(*numbers)[0], (*numbers)[1], (*numbers)[2]}, float3_of(colour.data())});
         }
-        return true;
+        return {};
     }
 
-    bool read_groups(RequestedLight& to) const {
+    Read read_groups(RequestedLight& to) const {
         for (const std::string& text : request_.groups) {
             const std::size_t equals = text.rfind('=');
             const auto numbers =
                 equals == std::string::npos ? std::nullopt : number_list(text.substr(equals + 1), 3);
             if (!numbers || equals == 0)
                 return refuse("--group takes NAME=r,g,b, not \"" + text + "\"");
-            if (!none_below_zero(*numbers, "--group"))
-                return false;
+            if (auto checked = none_below_zero(*numbers, "--group"); !checked)
+                return checked;
             to.names.push_back(text.substr(0, equals));
             to.groups.push_back({to.names.back(), float3_of(numbers->data())});
         }
         to.light.groups = to.groups;
-        return true;
+        return {};
     }
 
     const LightRequest& request_;
@@ -153,7 +153,7 @@ class Reader {
 
 }  // namespace
 
-int read_light(const LightRequest& request, const std::string& command, RequestedLight& light) {
+cli::Result<void> read_light(const LightRequest& request, const std::string& command, RequestedLight& light) {
     return Reader(request, command).read(light);
 }
 

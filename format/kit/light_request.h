@@ -1,6 +1,8 @@
 // The light of a moment as arguments say it: the same options for every command that relights.
 #pragma once
 
+#include "cli/failure.h"
+
 #include <drtv/day_file.h>
 
 #include <drtv/light.h>
@@ -39,8 +41,9 @@ struct RequestedLight {
     RequestedLight& operator=(const RequestedLight&) = delete;
 };
 
-// Gives the exit code: not exit_valid, and a complaint in the name of the command, where an argument or the
-// file is wrong.
-[[nodiscard]] int read_light(const LightRequest& request, const std::string& command, RequestedLight& light);
+// Fails, in the name of the command, where an argument or the file is wrong.
+[[nodiscard]] cli::Result<void> read_light(const LightRequest& request,
+                                           const std::string& command,
+                                           RequestedLight& light);
 
 }  // namespace drtv::kit

@@ -52,16 +52,21 @@ std::vector<std::uint8_t> text_chunk(const PngText& text) {
     return chunk;
 }
 
+std::string size_text(int width, int height) {
+    return std::to_string(width) + " x " + std::to_string(height) + " pixels";
+}
+
 }  // namespace
 
-std::vector<std::uint8_t> encode_png(const Image& image, const std::vector<PngText>& texts) {
+cli::Result<std::vector<std::uint8_t>> encode_png(const Image& image, const std::vector<PngText>& texts) {
     constexpr int channels = 3;
     const int width = static_cast<int>(image.width);
     const int height = static_cast<int>(image.height);
     std::vector<std::uint8_t> png;
     if (stbi_write_png_to_func(append, &png, width, height, channels, image.rgb.data(), width * channels) ==
-        0)
-        return {};
+        0) {
+        return cli::fail(cli::exit_unreadable, "memory is too short for " + size_text(width, height));
+    }
     for (const PngText& text : texts) {
         const std::vector<std::uint8_t> chunk = text_chunk(text);
         png.insert(png.begin() + after_header, chunk.begin(), chunk.end());
@@ -69,24 +74,18 @@ std::vector<std::uint8_t> encode_png(const Image& image, const std::vector<PngTe
     return png;
 }
 
-std::optional<Image> decode_png(std::span<const std::uint8_t> png, std::string& why) {
-    constexpr std::size_t most_pixels = std::size_t{64} << 20;
+cli::Result<Image> decode_png(std::span<const std::uint8_t> png) {
+    constexpr int max_pixels = 64'000'000;
     const auto length = static_cast<int>(std::min<std::size_t>(png.size(), INT32_MAX));
     int width = 0, height = 0, channels = 0;
-    if (stbi_info_from_memory(png.data(), length, &width, &height, &channels) == 0) {
-        why = "it is no PNG file";
-        return std::nullopt;
-    }
-    if (static_cast<std::size_t>(width) * static_cast<std::size_t>(height) > most_pixels) {
-        why = "it has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, over 64 million";
-        return std::nullopt;
-    }
+    if (stbi_info_from_memory(png.data(), length, &width, &height, &channels) == 0)
+        return cli::fail(cli::exit_invalid, "it is no PNG file");
+    if (std::int64_t{width} * height > max_pixels)
+        return cli::fail(cli::exit_invalid, "it has " + size_text(width, height) + ", over 64 million");
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
         stbi_load_from_memory(png.data(), length, &width, &height, &channels, 3), stbi_image_free);
-    if (!pixels) {
-        why = "it is damaged";
-        return std::nullopt;
-    }
+    if (!pixels)
+        return cli::fail(cli::exit_invalid, "it is damaged");
     Image image(static_cast<std::size_t>(width), static_cast<std::size_t>(height));
     std::copy_n(pixels.get(), image.rgb.size(), image.rgb.begin());
     return image;

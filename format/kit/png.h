@@ -1,6 +1,8 @@
 // PNG files, 8-bit RGB, by stb.
 #pragma once
 
+#include "cli/failure.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,7 +16,7 @@ namespace drtv::kit {
 struct Image {
     std::size_t width = 0;
     std::size_t height = 0;
-    std::vector<std::uint8_t> rgb;  // rows from the top, 3 bytes a pixel
+    std::vector<std::uint8_t> rgb;  // rows from the top, 3 bytes per pixel
 
     Image(std::size_t w, std::size_t h) : width(w), height(h), rgb(w * h * 3) {}
 
@@ -37,13 +39,12 @@ struct PngText {
     std::string text;
 };
 
-// Empty where memory is short.
-[[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image,
-                                                   const std::vector<PngText>& texts = {});
+// Fails where memory is short.
+[[nodiscard]] cli::Result<std::vector<std::uint8_t>> encode_png(const Image& image,
+                                                                const std::vector<PngText>& texts = {});
 
-// Nothing where the bytes are no PNG file of at most 64 megapixels; `why` is then a reason. Transparency is
-// left out.
-[[nodiscard]] std::optional<Image> decode_png(std::span<const std::uint8_t> png, std::string& why);
+// Fails where the bytes are no PNG file of at most 64 million pixels. Transparency is left out.
+[[nodiscard]] cli::Result<Image> decode_png(std::span<const std::uint8_t> png);
 
 // The first text of that key; nothing where there is none.
 [[nodiscard]] std::optional<std::string> png_text(std::span<const std::uint8_t> png, std::string_view key);

@@ -1,6 +1,6 @@
 #include "relit_volume.h"
 
-#include "exit_code.h"
+#include "cli/report.h"
 #include "sector_folder.h"
 
 #include <algorithm>
@@ -30,15 +30,15 @@ std::vector<LightShare> split_lamps(const SectorSet& set, std::span<const PointL
 }
 
 void warn_of_lost_light(const SectorSet& set, const RequestedLight& requested, const std::string& where) {
-    const std::string none = "warning: none of the sectors " + where + " has ";
+    const std::string none = "none of the sectors " + where + " has ";
     for (const std::string& name : requested.names) {
         if (!any_sector(set,
                         [&](const SectorView& view) { return find_light_group(view, name).has_value(); }))
-            complain(none + "a light group \"" + name + "\"");
+            cli::warn(none + "a light group \"" + name + "\"");
     }
     const auto takes_lamps = [](const SectorView& view) { return !view.local_receivers.empty(); };
     if (!requested.lamps.empty() && !any_sector(set, takes_lamps))
-        complain(none + "local transfer: lamps bring nothing");
+        cli::warn(none + "local transfer: lamps bring nothing");
 }
 
 TexelEncoding encoding_of(const std::string& name) {

@@ -1,6 +1,5 @@
 #include "sector_folder.h"
 
-#include "exit_code.h"
 #include "files.h"
 
 #include <algorithm>
@@ -49,10 +48,10 @@ std::optional<std::pair<std::int32_t, std::int32_t>> nearest_sector(const std::s
 }
 
 template <class IsWanted>
-int SectorFolder::load_if(const std::string& path, const IsWanted& is_wanted) {
+cli::Result<void> SectorFolder::load_if(const std::string& path, const IsWanted& is_wanted) {
     const auto files = sector_files(path);
     if (!files)
-        return exit_unreadable;
+        return tl::unexpected(files.error());
     std::map<Place, std::string> named;
     SectorSetLimits limits{0, 0, 0, 0};
     for (const std::string& file : *files) {
@@ -60,16 +59,13 @@ int SectorFolder::load_if(const std::string& path, const IsWanted& is_wanted) {
         // A file that does not even say its sector may be one that is wanted.
         if (place && !is_wanted(*place))
             continue;
-        int exit_code = exit_valid;
-        std::optional<RawSector> sector = load_raw_sector(file, exit_code);
+        auto sector = load_raw_sector(file);
         if (!sector)
-            return exit_code;
+            return tl::unexpected(sector.error());
         const SectorView& view = sector->view;
         const auto [entry, added] = named.try_emplace({view.i, view.j}, file);
-        if (!added) {
-            complain(entry->second + " and " + file + " hold the same sector");
-            return exit_invalid;
-        }
+        if (!added)
+            return cli::fail(cli::exit_invalid, entry->second + " and " + file + " hold the same sector");
         ++limits.sectors;
         ++limits.tiles;
         limits.probes += static_cast<std::uint32_t>(view.probe_count);
@@ -80,15 +76,15 @@ int SectorFolder::load_if(const std::string& path, const IsWanted& is_wanted) {
     set_ = std::make_unique<SectorSet>(memory_, limits);
     for (const auto& file : files_)
         set_->load(file);
-    return exit_valid;
+    return {};
 }
 
-int SectorFolder::load(const std::string& path, const std::vector<Double3>& places) {
+cli::Result<void> SectorFolder::load(const std::string& path, const std::vector<Double3>& places) {
     const std::set<Place> sectors = wanted(places);
     return load_if(path, [&](const Place& place) { return sectors.contains(place); });
 }
 
-int SectorFolder::load(const std::string& path, const WorldSquare& square) {
+cli::Result<void> SectorFolder::load(const std::string& path, const WorldSquare& square) {
     return load_if(path, [&](const Place& place) {
         const double x = place.first * sector_size_m;
         const double y = place.second * sector_size_m;

@@ -1,6 +1,8 @@
 // The sectors of a folder around some places, in memory as a game has them.
 #pragma once
 
+#include "cli/failure.h"
+
 #include <drtv/sector_set.h>
 
 #include <cstddef>
@@ -38,18 +40,18 @@ class SectorFolder {
     // Sectors up to this many away from a place's are loaded: all that can bear on it but far interiors.
     static constexpr int reach = 3;
 
-    // Gives the exit code: not exit_valid, and a complaint, where the folder, or a sector that is wanted,
-    // cannot be read. Sectors that are not there are none.
-    [[nodiscard]] int load(const std::string& path, const std::vector<Double3>& places);
+    // Fails where the folder, or a sector that is wanted, cannot be read. Sectors that are not there are
+    // none.
+    [[nodiscard]] cli::Result<void> load(const std::string& path, const std::vector<Double3>& places);
     // The same of sectors that come within a square of the world, metres.
-    [[nodiscard]] int load(const std::string& path, const WorldSquare& square);
+    [[nodiscard]] cli::Result<void> load(const std::string& path, const WorldSquare& square);
 
     // REQUIRES: loaded.
     [[nodiscard]] const SectorSet& set() const { return *set_; }
 
   private:
     template <class IsWanted>
-    [[nodiscard]] int load_if(const std::string& path, const IsWanted& is_wanted);
+    [[nodiscard]] cli::Result<void> load_if(const std::string& path, const IsWanted& is_wanted);
 
     std::vector<std::vector<std::uint8_t>> files_;  // raw
     std::vector<std::byte> memory_;

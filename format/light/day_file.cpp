@@ -178,21 +178,22 @@ void read_day(const json& root, DayFile::Storage& storage, Day& day) {
 
 DayFile::DayFile() : day_(std::make_shared<const Day>(default_day())) {}
 
-std::string DayFile::read(std::string_view text, DayFile& file) {
+tl::expected<DayFile, std::string> DayFile::read(std::string_view text) {
     try {
         const auto storage = std::make_shared<Storage>();
         const auto day = std::make_shared<Day>();
         read_day(json::parse(text), *storage, *day);
+        DayFile file;
         file.storage_ = storage;
         file.day_ = day;
-        return {};
+        return file;
     } catch (const Wrong& wrong) {
-        return wrong.what();
+        return tl::unexpected(std::string(wrong.what()));
     } catch (const json::exception& error) {
         // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
         const std::string what = error.what();
         const std::size_t end = what.find("] ");
-        return "it is no JSON: " + (end == std::string::npos ? what : what.substr(end + 2));
+        return tl::unexpected("it is no JSON: " + (end == std::string::npos ? what : what.substr(end + 2)));
     }
 }
 

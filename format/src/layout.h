@@ -154,7 +154,7 @@ struct LocalTransferLayout {
           codes(masks + probe_count * local_mask_bytes(sources)),
           end(codes + pairs * light_codes_bytes) {}
 
-    // Behind the codes of a filtered section: 26 bytes a pair, not 24.
+    // Behind the codes of a filtered section: 26 bytes per pair, not 24.
     [[nodiscard]] constexpr std::size_t filtered_end(std::size_t pairs) const {
         return codes + pairs * filtered_pair_bytes;
     }

@@ -113,11 +113,11 @@ void check_convergence(const SectionCheck& check) {
     namespace field = layout::convergence;
     const Convergence& c = *check.sector.convergence;
     const auto at_least =
-        [&](const char* field, std::uint64_t offset, auto value, auto least, const char* least_name) {
+        [&](const char* field, std::uint64_t offset, auto value, auto least, const char* min_name) {
             if (value >= least)
                 return;
             const auto path = [&] { return std::string("convergence.") + field; };
-            const auto message = [&] { return sentence(value, " is less than ", least_name); };
+            const auto message = [&] { return sentence(value, " is less than ", min_name); };
             const auto number = static_cast<double>(value);
             check.findings.add(issue::convergence_range, check.place.at(offset), number, path, message);
         };

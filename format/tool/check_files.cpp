@@ -44,16 +44,17 @@ std::optional<std::array<std::int32_t, 2>> sector_in_name(const std::string& pat
 }
 
 void check_file(CheckedFile& file, const ValidateOptions& options, bool for_regions) {
-    const kit::FileRead read = kit::read_file(file.path);
-    file.unreadable = read.error;
-    if (!read.ok())
+    const auto bytes = kit::read_file(file.path);
+    if (!bytes) {
+        file.unreadable = bytes.error();
         return;
-    file.report = validate_sector(read.bytes, options);
+    }
+    file.report = validate_sector(*bytes, options);
     if (!for_regions)
         return;
     RegionSector region;
     region.named = file.named;
-    if (read_region_sector(read.bytes, region).ok())
+    if (read_region_sector(*bytes, region).ok())
         file.region = std::move(region);
 }
 

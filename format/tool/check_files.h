@@ -1,6 +1,8 @@
 // Checking sector files for `drtv validate`: each by itself, then those of a folder against each other.
 #pragma once
 
+#include "cli/failure.h"
+
 #include <drtv/validate.h>
 #include <drtv/validate_region.h>
 
@@ -16,7 +18,7 @@ namespace drtv::tool {
 struct CheckedFile {
     std::string path;
     std::optional<std::array<std::int32_t, 2>> named;  // the sector that its name tells
-    std::string unreadable;                            // a sentence; else the rest holds
+    std::optional<cli::Failure> unreadable;            // else the rest holds
     Report report;
     std::optional<RegionSector> region;  // what its neighbours are held against, where it can be read
 };

@@ -1,6 +1,5 @@
 #include "commands.h"
 #include "diff_report.h"
-#include "kit/exit_code.h"
 #include "kit/files.h"
 #include "region_picture.h"
 #include "sector_diff.h"
@@ -42,24 +41,21 @@ Float3 change_colour(double change) {
     return {static_cast<float>(red), static_cast<float>(green), 0};
 }
 
-std::optional<Side> files_of(const std::string& path, int& exit_code) {
+cli::Result<Side> files_of(const std::string& path) {
     const auto files = kit::sector_files(path);
-    if (!files) {
-        exit_code = kit::exit_unreadable;
-        return std::nullopt;
-    }
+    if (!files)
+        return tl::unexpected(files.error());
     Side side;
     for (const std::string& file : *files) {
-        const std::optional<Sector> sector = kit::load_sector(file, exit_code);
+        const auto sector = kit::load_sector(file);
         if (!sector)
-            return std::nullopt;
+            return tl::unexpected(sector.error());
         const SectorPlace place = {sector->i, sector->j};
         const auto [entry, added] = side.try_emplace(place, file);
-        if (added)
-            continue;
-        kit::complain(entry->second + " and " + file + " hold the same sector " + text(place));
-        exit_code = kit::exit_invalid;
-        return std::nullopt;
+        if (!added) {
+            return cli::fail(cli::exit_invalid,
+                             entry->second + " and " + file + " hold the same sector " + text(place));
+        }
     }
     return side;
 }
@@ -75,72 +71,66 @@ void draw_dots(const Sector& first, const Sector& second, const SectorDiff& diff
     }
 }
 
-// A sector of both sides: compared, told where it differs, and drawn. Gives the exit code, as the next does.
-int compare_sector(const SectorPlace& place,
-                   const std::string& first_file,
-                   const std::string& second_file,
-                   Comparison& comparison) {
-    int exit_code = kit::exit_valid;
-    const std::optional<Sector> first = kit::load_sector(first_file, exit_code);
-    const std::optional<Sector> second = first ? kit::load_sector(second_file, exit_code) : std::nullopt;
+// A sector of both sides: compared, told where it differs, and drawn.
+cli::Result<void> compare_sector(const SectorPlace& place,
+                                 const std::string& first_file,
+                                 const std::string& second_file,
+                                 Comparison& comparison) {
+    const auto first = kit::load_sector(first_file);
+    if (!first)
+        return tl::unexpected(first.error());
+    const auto second = kit::load_sector(second_file);
     if (!second)
-        return exit_code;
+        return tl::unexpected(second.error());
     const SectorDiff diff = diff_sectors(*first, *second);
     draw_dots(*first, *second, diff, comparison.picture);
     DiffTotals& totals = comparison.totals;
     ++totals.compared;
     if (diff.equal())
-        return kit::exit_valid;
+        return {};
     ++totals.different;
     for (std::size_t q = 0; q < quantity_count; ++q)
         totals.changes[q].merge(diff.changes[q], "sector " + text(place) + " ");
     comparison.report.add(place, diff, second->probes.size());
-    return kit::exit_valid;
+    return {};
 }
 
-int add_single(const std::string& file, const Float3& colour, RegionPicture& picture) {
-    int exit_code = kit::exit_valid;
-    const std::optional<Sector> sector = kit::load_sector(file, exit_code);
-    if (sector)
-        picture.add(*sector, [&](std::size_t, float) { return colour; });
-    return exit_code;
+cli::Result<void> add_single(const std::string& file, const Float3& colour, RegionPicture& picture) {
+    const auto sector = kit::load_sector(file);
+    if (!sector)
+        return tl::unexpected(sector.error());
+    picture.add(*sector, [&](std::size_t, float) { return colour; });
+    return {};
 }
 
-int compare_sides(const Side& first, const Side& second, Comparison& comparison) {
-    int exit_code = kit::exit_valid;
+cli::Result<void> compare_sides(const Side& first, const Side& second, Comparison& comparison) {
     for (const auto& [place, file] : second) {
         const auto before = first.find(place);
-        if (before == first.end()) {
+        const bool is_new = before == first.end();
+        if (is_new)
             comparison.totals.only_second.push_back(place);
-            exit_code = add_single(file, added_colour, comparison.picture);
-        } else {
-            exit_code = compare_sector(place, before->second, file, comparison);
-        }
-        if (exit_code != kit::exit_valid)
-            return exit_code;
+        auto done = is_new ? add_single(file, added_colour, comparison.picture)
+                           : compare_sector(place, before->second, file, comparison);
+        if (!done)
+            return done;
     }
     for (const auto& [place, file] : first) {
         if (second.contains(place))
             continue;
         comparison.totals.only_first.push_back(place);
-        exit_code = add_single(file, removed_colour, comparison.picture);
-        if (exit_code != kit::exit_valid)
-            return exit_code;
+        if (auto done = add_single(file, removed_colour, comparison.picture); !done)
+            return done;
     }
-    return kit::exit_valid;
+    return {};
 }
 
-int write_picture(const RegionPicture& picture, const DiffRequest& request) {
-    const auto image = draw(picture, request.metres_per_pixel);
-    if (!image)
-        return kit::exit_usage;
-    const std::string error = kit::write_png_file(*request.png, kit::encode_png(*image));
-    if (!error.empty()) {
-        kit::complain(error);
-        return kit::exit_unreadable;
-    }
-    if (request.json)
-        return kit::exit_valid;
+cli::Result<void> write_picture(const RegionPicture& picture, const DiffRequest& request) {
+    const auto written =
+        draw(picture, request.metres_per_pixel)
+            .and_then([](const kit::Image& image) { return kit::encode_png(image); })
+            .and_then([&](const kit::FileBytes& png) { return kit::write_png_file(*request.png, png); });
+    if (!written || request.json)
+        return written;
     std::printf(
         "%s: grey is equal; green changed by %g or less of a white sky, yellow by %g, red by %g or more; "
         "blue is new, magenta gone\n",
@@ -148,28 +138,28 @@ int write_picture(const RegionPicture& picture, const DiffRequest& request) {
         min_shown_change,
         std::sqrt(min_shown_change * red_change),
         red_change);
-    return kit::exit_valid;
+    return {};
 }
 
 }  // namespace
 
-int run_diff(const DiffRequest& request) {
-    int exit_code = kit::exit_valid;
-    const auto first = files_of(request.first, exit_code);
-    const auto second = first ? files_of(request.second, exit_code) : std::nullopt;
+cli::Result<cli::ExitCode> run_diff(const DiffRequest& request) {
+    const auto first = files_of(request.first);
+    if (!first)
+        return tl::unexpected(first.error());
+    const auto second = files_of(request.second);
     if (!second)
-        return exit_code;
+        return tl::unexpected(second.error());
 
     Comparison comparison{{}, DiffReport(request.json), {}};
-    exit_code = compare_sides(*first, *second, comparison);
-    if (exit_code != kit::exit_valid)
-        return exit_code;
+    if (auto done = compare_sides(*first, *second, comparison); !done)
+        return tl::unexpected(done.error());
     comparison.report.finish(comparison.totals);
-    if (request.png)
-        exit_code = write_picture(comparison.picture, request);
-    if (exit_code != kit::exit_valid)
-        return exit_code;
-    return comparison.totals.equal() ? kit::exit_valid : kit::exit_different;
+    if (request.png) {
+        if (auto done = write_picture(comparison.picture, request); !done)
+            return tl::unexpected(done.error());
+    }
+    return comparison.totals.equal() ? cli::exit_done : cli::exit_different;
 }
 
 }  // namespace drtv::tool

@@ -1,5 +1,4 @@
 #include "commands.h"
-#include "kit/exit_code.h"
 #include "kit/files.h"
 #include "kit/json_writer.h"
 
@@ -175,12 +174,11 @@ void append_interiors(kit::JsonWriter& json, const Sector& sector) {
 
 }  // namespace
 
-int run_dump(const std::string& file) {
-    int exit_code = kit::exit_valid;
-    std::vector<std::uint8_t> bytes;
-    const std::optional<Sector> loaded = kit::load_sector(file, exit_code, &bytes);
+cli::Result<cli::ExitCode> run_dump(const std::string& file) {
+    kit::FileBytes bytes;
+    const auto loaded = kit::load_sector(file, &bytes);
     if (!loaded)
-        return exit_code;
+        return tl::unexpected(loaded.error());
     const Sector& sector = *loaded;
     kit::JsonWriter json;
     json.begin_object().key("format_version").value(kit::format_version(bytes));
@@ -210,7 +208,7 @@ int run_dump(const std::string& file) {
     }
     json.end_object();
     std::puts(json.text().c_str());
-    return kit::exit_valid;
+    return cli::exit_done;
 }
 
 }  // namespace drtv::tool

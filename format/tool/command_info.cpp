@@ -1,5 +1,4 @@
 #include "commands.h"
-#include "kit/exit_code.h"
 #include "kit/files.h"
 #include "quality_parts.h"
 
@@ -138,7 +137,7 @@ void print_light(const Sector& sector) {
     }
     if (const auto& c = sector.convergence) {
         std::printf(
-            "convergence     error %g asked, %g median, %g at 95 %%, %g at most; %u to %u paths a probe\n",
+            "convergence     error %g asked, %g median, %g at 95 %%, %g at most; %u to %u paths per probe\n",
             static_cast<double>(c->error_asked),
             static_cast<double>(c->error_median),
             static_cast<double>(c->error_p95),
@@ -152,16 +151,15 @@ void print_light(const Sector& sector) {
 
 }  // namespace
 
-int run_info(const std::string& file) {
-    int exit_code = kit::exit_valid;
-    std::vector<std::uint8_t> bytes;
-    const std::optional<Sector> loaded = kit::load_sector(file, exit_code, &bytes);
+cli::Result<cli::ExitCode> run_info(const std::string& file) {
+    kit::FileBytes bytes;
+    const auto loaded = kit::load_sector(file, &bytes);
     if (!loaded)
-        return exit_code;
+        return tl::unexpected(loaded.error());
     const Sector& sector = *loaded;
     std::vector<SectionEntry> entries;
     if (const ReadStatus status = read_section_table(bytes, entries); !status.ok())
-        return kit::exit_invalid;
+        return cli::fail(cli::exit_invalid, file + ": " + status.message);
 
     const int x = sector.i * sector_size_m, y = sector.j * sector_size_m;
     std::printf("sector          (%d, %d): x %d to %d m, y %d to %d m\n",
@@ -197,7 +195,7 @@ int run_info(const std::string& file) {
                 static_cast<unsigned long long>(s.back_hits));
     print_light(sector);
     print_sections(entries);
-    return kit::exit_valid;
+    return cli::exit_done;
 }
 
 }  // namespace drtv::tool

@@ -1,5 +1,4 @@
 #include "commands.h"
-#include "kit/exit_code.h"
 
 #include <drtv/issues.h>
 
@@ -50,7 +49,7 @@ constexpr const char* retired = R"(
 A validator of 0.1.0 reports both of bakes whose probes are chosen by sight; `--ignore` leaves them out.
 )";
 
-int run_issues() {
+cli::Result<cli::ExitCode> run_issues() {
     std::fputs(head, stdout);
     for (const auto& [group, title] : groups) {
         std::printf("\n## %s\n\n| code | severity | meaning |\n|------|----------|---------|\n", title);
@@ -64,7 +63,7 @@ int run_issues() {
         }
     }
     std::fputs(retired, stdout);
-    return kit::exit_valid;
+    return cli::exit_done;
 }
 
 }  // namespace drtv::tool

@@ -1,6 +1,5 @@
 #include "commands.h"
 #include "dot_colour.h"
-#include "kit/exit_code.h"
 #include "kit/files.h"
 #include "region_picture.h"
 
@@ -33,20 +32,19 @@ std::vector<std::string> preview_quantities() {
     return names;
 }
 
-int run_preview(const PreviewRequest& request) {
+cli::Result<cli::ExitCode> run_preview(const PreviewRequest& request) {
     const auto* quantity =
         std::ranges::find(quantities, request.quantity, &std::pair<std::string_view, DotQuantity>::first);
     if (quantity == quantities.end())
-        return kit::exit_usage;
+        return cli::exit_usage;  // the command line is checked before
     const auto files = kit::sector_files(request.path);
     if (!files)
-        return kit::exit_unreadable;
+        return tl::unexpected(files.error());
     RegionPicture picture;
     for (const std::string& file : *files) {
-        int exit_code = kit::exit_valid;
-        const std::optional<Sector> sector = kit::load_sector(file, exit_code);
+        const auto sector = kit::load_sector(file);
         if (!sector)
-            return exit_code;
+            return tl::unexpected(sector.error());
         picture.add(*sector, [&](std::size_t p, float sky_visibility) {
             return dot_colour(*sector, p, sky_visibility, quantity->second);
         });
@@ -54,25 +52,22 @@ int run_preview(const PreviewRequest& request) {
     std::optional<Underlay> under;
     std::error_code code;
     if (request.under && std::filesystem::equivalent(*request.under, request.out, code)) {
-        kit::complain("preview: --out would replace the picture of --under, " + *request.under);
-        return kit::exit_usage;
+        return cli::fail(cli::exit_usage,
+                         "preview: --out would replace the picture of --under, " + *request.under);
     }
     if (request.under) {
-        int exit_code = kit::exit_valid;
-        under = Underlay::read(*request.under, exit_code);
-        if (!under)
-            return exit_code;
+        auto read = Underlay::read(*request.under);
+        if (!read)
+            return tl::unexpected(read.error());
+        under = std::move(*read);
     }
     const auto image = draw(picture, request.metres_per_pixel, under ? &*under : nullptr);
     if (!image)
-        return kit::exit_usage;
-    const kit::FileBytes png = kit::encode_png(*image);
-    const std::string error =
-        png.empty() ? "memory is too short for the picture" : kit::write_png_file(request.out, png);
-    if (!error.empty()) {
-        kit::complain(error);
-        return kit::exit_unreadable;
-    }
+        return tl::unexpected(image.error());
+    const auto written = kit::encode_png(*image).and_then(
+        [&](const kit::FileBytes& png) { return kit::write_png_file(request.out, png); });
+    if (!written)
+        return tl::unexpected(written.error());
     std::printf("%s: %zu x %zu pixels, %zu sector%s, %zu probes\n",
                 request.out.c_str(),
                 image->width,
@@ -80,7 +75,7 @@ int run_preview(const PreviewRequest& request) {
                 files->size(),
                 files->size() == 1 ? "" : "s",
                 picture.dots.size());
-    return kit::exit_valid;
+    return cli::exit_done;
 }
 
 }  // namespace drtv::tool

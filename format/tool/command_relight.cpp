@@ -1,8 +1,6 @@
 #include "command_relight.h"
 
-#include "commands.h"
 #include "kit/ambient_json.h"
-#include "kit/exit_code.h"
 #include "kit/json_writer.h"
 #include "kit/number_list.h"
 #include "kit/relit_volume.h"
@@ -93,24 +91,18 @@ void print_head() {
                 "b");
 }
 
-// Gives the exit code.
-int read_places(const RelightRequest& request, std::vector<RelightPoint>& points) {
-    if (request.points)
-        return read_points(*request.points, points);
-    return read_point(request.at, request.normal, points) ? kit::exit_valid : kit::exit_usage;
+cli::Result<std::vector<RelightPoint>> read_places(const RelightRequest& request) {
+    return request.points ? read_points(*request.points) : read_point(request.at, request.normal);
 }
 
-// False, and a complaint, where the option is given and is no place.
-bool read_camera(const RelightRequest& request, std::optional<Double3>& camera) {
+// Nothing where the option is not given.
+cli::Result<std::optional<Double3>> read_camera(const RelightRequest& request) {
     if (!request.camera)
-        return true;
+        return std::nullopt;
     const auto numbers = kit::number_list(*request.camera, 3);
-    if (!numbers) {
-        kit::complain("relight: --camera takes x,y,z, not \"" + *request.camera + "\"");
-        return false;
-    }
-    camera = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
-    return true;
+    if (!numbers)
+        return cli::fail(cli::exit_usage, "relight: --camera takes x,y,z, not \"" + *request.camera + "\"");
+    return Double3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
 VolumeSettings volume_settings(const RelightRequest& request) {
@@ -122,27 +114,25 @@ VolumeSettings volume_settings(const RelightRequest& request) {
 
 }  // namespace
 
-int run_relight(const RelightRequest& request) {
+cli::Result<cli::ExitCode> run_relight(const RelightRequest& request) {
     kit::RequestedLight requested;
-    if (const int exit_code = kit::read_light(request.light, "relight", requested);
-        exit_code != kit::exit_valid)
-        return exit_code;
-    std::vector<RelightPoint> points;
-    if (const int exit_code = read_places(request, points); exit_code != kit::exit_valid)
-        return exit_code;
-
-    std::optional<Double3> camera;
-    if (!read_camera(request, camera))
-        return kit::exit_usage;
+    if (auto read = kit::read_light(request.light, "relight", requested); !read)
+        return tl::unexpected(read.error());
+    const auto points = read_places(request);
+    if (!points)
+        return tl::unexpected(points.error());
+    const auto camera = read_camera(request);
+    if (!camera)
+        return tl::unexpected(camera.error());
 
     std::vector<Double3> places;
-    for (const RelightPoint& point : points)
+    for (const RelightPoint& point : *points)
         places.push_back(point.at);
     for (const PointLight& lamp : requested.lamps)
         places.push_back(lamp.position);
     kit::SectorFolder folder;
-    if (const int exit_code = folder.load(request.folder, places); exit_code != kit::exit_valid)
-        return exit_code;
+    if (auto loaded = folder.load(request.folder, places); !loaded)
+        return tl::unexpected(loaded.error());
 
     const SectorSet& set = folder.set();
     kit::warn_of_lost_light(set, requested, "around the places");
@@ -152,7 +142,7 @@ int run_relight(const RelightRequest& request) {
         volume.emplace(set, requested.light, lamps, volume_settings(request));
     if (!request.json)
         print_head();
-    for (const RelightPoint& point : points) {
+    for (const RelightPoint& point : *points) {
         AmbientPlace place;
         place.at = point.at;
         place.normal = point.normal;
@@ -160,14 +150,14 @@ int run_relight(const RelightRequest& request) {
         place.offset_m = static_cast<float>(request.offset_m.value_or(volume ? surface_offset_m : 0));
         place.interiors = request.interiors;
         const Ambient ambient =
-            volume ? ambient_in(volume->at(camera.value_or(point.at)), set, requested.light, lamps, place)
+            volume ? ambient_in(volume->at(camera->value_or(point.at)), set, requested.light, lamps, place)
                    : ambient_at(set, requested.light, lamps, place);
         if (request.json)
             print_json(point, ambient);
         else
             print_row(point, ambient);
     }
-    return kit::exit_valid;
+    return cli::exit_done;
 }
 
 }  // namespace drtv::tool

@@ -21,6 +21,6 @@ struct RelightRequest {
     bool json = false;
     kit::LightRequest light;
 };
-int run_relight(const RelightRequest& request);
+cli::Result<cli::ExitCode> run_relight(const RelightRequest& request);
 
 }  // namespace drtv::tool

@@ -1,5 +1,4 @@
 #include "commands.h"
-#include "kit/exit_code.h"
 #include "kit/files.h"
 
 #include <drtv/write.h>
@@ -69,15 +68,15 @@ std::vector<std::string> optional_section_names() {
     return {optional_sections.begin(), optional_sections.end()};
 }
 
-int run_strip(const StripRequest& request) {
+cli::Result<cli::ExitCode> run_strip(const StripRequest& request) {
     const WriteOptions write{request.compress ? Codec::zstd : Codec::raw};
     const auto files = kit::sector_files(request.in);
     if (!files)
-        return kit::exit_unreadable;
+        return tl::unexpected(files.error());
     if (is_within(request.in, request.out)) {
-        kit::complain("strip: " + request.out + " is, or lies in, " + request.in +
-                      ": write to another place");
-        return kit::exit_usage;
+        return cli::fail(
+            cli::exit_usage,
+            "strip: " + request.out + " is, or lies in, " + request.in + ": write to another place");
     }
     std::set<fs::path> inputs;
     std::error_code code;
@@ -87,32 +86,27 @@ int run_strip(const StripRequest& request) {
     for (const std::string& file : *files) {
         const std::string target = target_of(file, request);
         if (inputs.contains(fs::weakly_canonical(target, code))) {
-            kit::complain("strip: " + target + " is a file that is stripped: write to another place");
-            return kit::exit_usage;
+            return cli::fail(cli::exit_usage,
+                             "strip: " + target + " is a file that is stripped: write to another place");
         }
-        int exit_code = kit::exit_valid;
-        if (!kit::load_sector(file, exit_code))
-            return exit_code;
+        if (const auto sector = kit::load_sector(file); !sector)
+            return tl::unexpected(sector.error());
     }
     std::size_t before = 0, after = 0;
     std::set<fs::path> written;
     for (const std::string& file : *files) {
         std::vector<std::uint8_t> bytes;
-        int exit_code = kit::exit_valid;
-        std::optional<Sector> sector = kit::load_sector(file, exit_code, &bytes);
+        auto sector = kit::load_sector(file, &bytes);
         if (!sector)
-            return exit_code;
+            return tl::unexpected(sector.error());
         strip(*sector, request.keep);
         const std::vector<std::uint8_t> stripped = write_sector(*sector, write);
         const std::string target = target_of(file, request);
         std::error_code ignored;
         if (const fs::path folder = fs::path(target).parent_path(); !folder.empty())
             fs::create_directories(folder, ignored);
-        const std::string error = kit::write_file(target, stripped);
-        if (!error.empty()) {
-            kit::complain(error);
-            return kit::exit_unreadable;
-        }
+        if (auto done = kit::write_file(target, stripped); !done)
+            return tl::unexpected(done.error());
         written.insert(fs::path(target).lexically_normal());
         before += bytes.size();
         after += stripped.size();
@@ -132,7 +126,7 @@ int run_strip(const StripRequest& request) {
                         others == 1 ? "it was" : "they were");
         }
     }
-    return kit::exit_valid;
+    return cli::exit_done;
 }
 
 }  // namespace drtv::tool

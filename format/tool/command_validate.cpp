@@ -1,6 +1,6 @@
 #include "check_files.h"
+#include "cli/report.h"
 #include "commands.h"
-#include "kit/exit_code.h"
 #include "kit/files.h"
 #include "validate_report.h"
 
@@ -19,18 +19,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool ignore(const std::string& code, std::vector<const Issue*>& ignored) {
+cli::Result<const Issue*> issue_to_ignore(const std::string& code) {
     const Issue* issue = issue_of_code(code);
-    if (issue == nullptr) {
-        kit::complain("validate: there is no issue \"" + code + "\"; drtv issues lists them");
-        return false;
-    }
-    if (issue->group == IssueGroup::structure && issue->severity == Severity::error) {
-        kit::complain("validate: " + code + " cannot be ignored: nobody can read such a file");
-        return false;
-    }
-    ignored.push_back(issue);
-    return true;
+    if (issue == nullptr)
+        return cli::fail(cli::exit_usage,
+                         "validate: there is no issue \"" + code + "\"; drtv issues lists them");
+    if (issue->group == IssueGroup::structure && issue->severity == Severity::error)
+        return cli::fail(cli::exit_usage,
+                         "validate: " + code + " cannot be ignored: nobody can read such a file");
+    return issue;
 }
 
 // All files at and below the paths, each once. False where a path gives none: that is told.
@@ -40,6 +37,7 @@ bool find_files(const std::vector<std::string>& paths, std::vector<CheckedFile>&
     for (const std::string& path : paths) {
         const auto found = kit::sector_files(path);
         if (!found) {
+            cli::complain(found.error());
             complete = false;
             continue;
         }
@@ -55,30 +53,31 @@ bool find_files(const std::vector<std::string>& paths, std::vector<CheckedFile>&
 
 }  // namespace
 
-int run_validate(const ValidateRequest& request) {
+cli::Result<cli::ExitCode> run_validate(const ValidateRequest& request) {
     std::vector<const Issue*> ignored;
     for (const std::string& code : request.ignored) {
-        if (!ignore(code, ignored))
-            return kit::exit_usage;
+        const auto issue = issue_to_ignore(code);
+        if (!issue)
+            return tl::unexpected(issue.error());
+        ignored.push_back(*issue);
     }
     const ValidateOptions options{request.quick, request.max_findings, ignored};
 
     std::vector<CheckedFile> files;
-    int exit_code = find_files(request.paths, files) ? kit::exit_valid : kit::exit_unreadable;
+    cli::ExitCode exit_code = find_files(request.paths, files) ? cli::exit_done : cli::exit_unreadable;
     check_files(files, options, request.neighbours);
     const std::size_t folders = request.neighbours ? check_regions(files, options) : 0;
 
     ValidateReport report(request.json);
     for (const CheckedFile& file : files) {
-        if (!file.unreadable.empty()) {
-            kit::complain(file.unreadable);
-            exit_code = std::max<int>(exit_code, kit::exit_unreadable);
+        if (file.unreadable) {
+            exit_code = std::max(exit_code, cli::complain(*file.unreadable));
             continue;
         }
         const bool alarming = request.warnings_as_errors && file.report.warnings > 0;
         const bool valid = file.report.valid() && !alarming;
         if (!valid)
-            exit_code = kit::exit_invalid;
+            exit_code = cli::exit_invalid;
         report.add(file, valid);
     }
     report.finish(folders);

@@ -1,5 +1,8 @@
-// The tool's commands. main.cpp makes their requests from the command line; each gives the exit code.
+// The tool's commands. main.cpp makes their requests from the command line; each gives the exit code
+// where it did not fail.
 #pragma once
+
+#include "cli/failure.h"
 
 #include <cstddef>
 #include <optional>
@@ -17,12 +20,12 @@ struct ValidateRequest {
     bool neighbours = false;
     bool warnings_as_errors = false;
 };
-int run_validate(const ValidateRequest& request);
+cli::Result<cli::ExitCode> run_validate(const ValidateRequest& request);
 
-int run_info(const std::string& file);
+cli::Result<cli::ExitCode> run_info(const std::string& file);
 
 // As JSON.
-int run_dump(const std::string& file);
+cli::Result<cli::ExitCode> run_dump(const std::string& file);
 
 struct PreviewRequest {
     std::string path;
@@ -31,7 +34,7 @@ struct PreviewRequest {
     std::string quantity;         // one of preview_quantities()
     std::optional<std::string> under;
 };
-int run_preview(const PreviewRequest& request);
+cli::Result<cli::ExitCode> run_preview(const PreviewRequest& request);
 [[nodiscard]] std::vector<std::string> preview_quantities();
 
 struct StripRequest {
@@ -40,7 +43,7 @@ struct StripRequest {
     std::vector<std::string> keep;  // of optional_section_names()
     bool compress = false;
 };
-int run_strip(const StripRequest& request);
+cli::Result<cli::ExitCode> run_strip(const StripRequest& request);
 [[nodiscard]] std::vector<std::string> optional_section_names();
 
 struct DiffRequest {
@@ -50,14 +53,14 @@ struct DiffRequest {
     double metres_per_pixel = 0;  // as above
     bool json = false;
 };
-int run_diff(const DiffRequest& request);
+cli::Result<cli::ExitCode> run_diff(const DiffRequest& request);
 
 struct TilesRequest {
     std::string path;
     std::string out;
 };
-int run_tiles(const TilesRequest& request);
+cli::Result<cli::ExitCode> run_tiles(const TilesRequest& request);
 
-int run_issues();
+cli::Result<cli::ExitCode> run_issues();
 
 }  // namespace drtv::tool

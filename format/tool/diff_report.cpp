@@ -6,14 +6,14 @@
 namespace drtv::tool {
 namespace {
 
-using Changes = std::array<Change, quantity_count>;
+using Changes = std::array<QuantityChange, quantity_count>;
 
 // Sectors of one side that are named one by one; --json names all.
 constexpr std::size_t max_named = 10;
 
 void print_changes(const Changes& changes) {
     for (std::size_t q = 0; q < quantity_count; ++q) {
-        const Change& change = changes[q];
+        const QuantityChange& change = changes[q];
         if (change.largest > 0)
             std::printf("  %-18s at most %-12g rms %-12g %s\n",
                         std::string(quantity_names[q]).c_str(),
@@ -77,7 +77,7 @@ void print_totals(const DiffTotals& totals) {
 void append_changes(kit::JsonWriter& json, const Changes& changes) {
     json.key("changes").begin_object();
     for (std::size_t q = 0; q < quantity_count; ++q) {
-        const Change& change = changes[q];
+        const QuantityChange& change = changes[q];
         json.key(quantity_names[q]).begin_object();
         json.member("largest", change.largest);
         json.member("rms", change.rms());

@@ -23,7 +23,7 @@ struct DiffTotals {
     std::size_t different = 0;
     std::vector<SectorPlace> only_first;
     std::vector<SectorPlace> only_second;
-    std::array<Change, quantity_count> changes;
+    std::array<QuantityChange, quantity_count> changes;
 
     [[nodiscard]] bool equal() const;
 };

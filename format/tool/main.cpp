@@ -1,8 +1,10 @@
 // drtv: validates, shows, compares, strips, pictures and relights sector files. Here the command line is
 // taken apart.
+#include "cli/option_checks.h"
+#include "cli/parse.h"
+#include "cli/report.h"
+#include "cli/version.h"
 #include "commands.h"
-#include "kit/exit_code.h"
-#include "kit/option_checks.h"
 #include "relight_options.h"
 
 #include <drtv/version.h>
@@ -10,7 +12,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <functional>
 #include <string>
 #include <vector>
@@ -32,7 +33,7 @@ struct CommandLine {
     bool full = false;
     bool dump_json = false;
     // The command. Set when the line has been parsed.
-    std::function<int()> run;
+    std::function<cli::Result<cli::ExitCode>()> run;
 };
 
 void add_checks(CLI::App& app, CommandLine& line) {
@@ -53,7 +54,7 @@ void add_checks(CLI::App& app, CommandLine& line) {
         ->allow_extra_args(false)
         ->type_name("CODE");
     validate->add_option("--max-findings", request.max_findings, "Findings shown per file")
-        ->check(kit::whole_number(1, 1'000'000))
+        ->check(cli::whole_number(1, 1'000'000))
         ->capture_default_str();
     validate->callback([&line] { line.run = [&line] { return run_validate(line.validate); }; });
 
@@ -75,12 +76,12 @@ void add_views(CLI::App& app, CommandLine& line) {
     preview->add_option("PATH", line.preview.path, "A folder, or one file")->required();
     preview->add_option("--out", line.preview.out, "The picture")->required()->type_name("FILE.png");
     preview->add_option("--metres-per-pixel", line.preview.metres_per_pixel, "By default as fits the region")
-        ->check(kit::number_below(1000));
+        ->check(cli::number_below(1000));
     preview
         ->add_option("--quantity",
                      line.preview.quantity,
-                     "What colours the probes: " + kit::joined(preview_quantities()))
-        ->check(kit::one_of(preview_quantities()))
+                     "What colours the probes: " + cli::joined(preview_quantities()))
+        ->check(cli::one_of(preview_quantities()))
         ->capture_default_str();
     preview
         ->add_option("--under",
@@ -101,7 +102,7 @@ std::vector<std::string> kept_sections(const std::vector<std::string>& names) {
         if (std::ranges::find(known, name) == known.end())
             throw CLI::ValidationError("--keep",
                                        "\"" + name + "\" is no optional section: there are " +
-                                           kit::joined(known) + "; all and none stand alone");
+                                           cli::joined(known) + "; all and none stand alone");
     }
     return names;
 }
@@ -117,7 +118,7 @@ void add_strip(CLI::App& app, CommandLine& line) {
         ->add_option_function<std::vector<std::string>>(
             "--keep",
             [&line](const std::vector<std::string>& names) { line.strip.keep = kept_sections(names); },
-            "Optional sections to keep: " + kit::joined(optional_section_names()) +
+            "Optional sections to keep: " + cli::joined(optional_section_names()) +
                 "; all, or none; the default is all but quality")
         ->delimiter(',')
         ->allow_extra_args(false)
@@ -127,7 +128,7 @@ void add_strip(CLI::App& app, CommandLine& line) {
             "--codec",
             [&line](const std::string& codec) { line.strip.compress = codec == "zstd"; },
             "How sections are stored: raw, zstd; the default is raw")
-        ->check(kit::one_of({"raw", "zstd"}));
+        ->check(cli::one_of({"raw", "zstd"}));
     strip->callback([&line] { line.run = [&line] { return run_strip(line.strip); }; });
 }
 
@@ -147,59 +148,31 @@ void add_diff(CLI::App& app, CommandLine& line) {
     CLI::Option* png =
         diff->add_option("--png", line.diff.png, "Draw what changed, from above")->type_name("FILE.png");
     diff->add_option("--metres-per-pixel", line.diff.metres_per_pixel, "Of the picture")
-        ->check(kit::number_below(1000))
+        ->check(cli::number_below(1000))
         ->needs(png);
     diff->callback([&line] { line.run = [&line] { return run_diff(line.diff); }; });
-}
-
-// Gives the exit status.
-int end_parse(const CLI::App& app, const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0)
-        return app.exit(error);  // --help, --version
-    const auto commands = app.get_subcommands();
-    if (commands.empty() && !app.remaining().empty()) {
-        kit::complain("there is no command \"" + app.remaining().front() + "\"; drtv --help lists them");
-        return kit::exit_usage;
-    }
-    const std::string command = commands.empty() ? "drtv" : "drtv " + commands.front()->get_name();
-    const std::string prefix = commands.empty() ? "" : commands.front()->get_name() + ": ";
-    kit::complain(prefix + error.what() + "; " + command + " --help says more");
-    return kit::exit_usage;
-}
-
-int run(int argc, char** argv) {
-    CLI::App app{"drtv validates, shows, compares, strips and relights sector files.", "drtv"};
-    app.require_subcommand(1);
-    app.set_version_flag("--version",
-                         "drtv " DRTV_VERSION ", sector format 1." DRTV_VERSION_TEXT(DRTV_FORMAT_MINOR));
-    app.footer(
-        "drtv COMMAND --help lists a command's options.\n"
-        "Exit status: 0 valid or equal, 1 wrong usage, 2 a file cannot be read or written, 3 a file is "
-        "invalid,\n"
-        "4 diff found a difference");
-    CommandLine line;
-    add_checks(app, line);
-    add_views(app, line);
-    add_strip(app, line);
-    add_tiles(app, line);
-    add_diff(app, line);
-    add_relight(app, line.relight, line.run);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return end_parse(app, error);
-    }
-    return line.run();
 }
 
 }  // namespace
 }  // namespace drtv::tool
 
 int main(int argc, char** argv) {
-    const int exit_code = drtv::tool::run(argc, argv);
-    // A full disk behind a redirected stdout must not look like success.
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
-        return exit_code;
-    drtv::kit::complain("cannot write to standard output");
-    return drtv::kit::exit_unreadable;
+    using namespace drtv;
+    CLI::App app{"drtv validates, shows, compares, strips and relights sector files.", "drtv"};
+    app.require_subcommand(1);
+    app.set_version_flag(
+        "--version",
+        cli::version_text(
+            "drtv", cli::built_isa_class(), "sector format 1." DRTV_VERSION_TEXT(DRTV_FORMAT_MINOR)));
+    app.footer("drtv COMMAND --help lists a command's options.\n\n" + cli::exit_code_help("drtv"));
+    tool::CommandLine line;
+    tool::add_checks(app, line);
+    tool::add_views(app, line);
+    tool::add_strip(app, line);
+    tool::add_tiles(app, line);
+    tool::add_diff(app, line);
+    tool::add_relight(app, line.relight, line.run);
+    if (const auto ended = cli::parse(app, argc, argv))
+        return *ended;
+    return cli::end_program(line.run());
 }

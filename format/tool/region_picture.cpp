@@ -2,7 +2,6 @@
 
 #include "commands.h"
 #include "ground_map.h"
-#include "kit/exit_code.h"
 #include "kit/srgb.h"
 #include "map_extent.h"
 
@@ -145,14 +144,14 @@ void RegionPicture::add(const Sector& sector, const DotColour& colour) {
     }
 }
 
-std::optional<kit::Image> draw(const RegionPicture& picture, double metres_per_pixel, const Underlay* under) {
+cli::Result<kit::Image> draw(const RegionPicture& picture, double metres_per_pixel, const Underlay* under) {
     const MapExtent extent = measure(picture.sectors, metres_per_pixel);
     const std::size_t covered = extent.sectors_wide() * extent.sectors_high();
     if (covered > max_covered_sectors) {
-        kit::complain("the sectors lie too far apart for one picture: the rectangle around them has " +
-                      std::to_string(covered) + " sectors, the limit is " +
-                      std::to_string(max_covered_sectors));
-        return std::nullopt;
+        return cli::fail(cli::exit_usage,
+                         "the sectors lie too far apart for one picture: the rectangle around them has " +
+                             std::to_string(covered) + " sectors, the limit is " +
+                             std::to_string(max_covered_sectors));
     }
     kit::Image image(extent.width, extent.height);
     draw_background(image, GroundMap(extent, picture.dots), extent, under);

@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <vector>
 
 namespace drtv::tool {
@@ -34,10 +33,10 @@ struct RegionPicture {
 };
 
 // Where there is a picture to lie under, the ground is that. At 0 metres a pixel the longer side has about
-// 1,600 pixels. Nothing, and a complaint, where the sectors lie too far apart for one picture. REQUIRES: at
+// 1,600 pixels. Fails where the sectors lie too far apart for one picture. REQUIRES: at
 // least one sector.
-[[nodiscard]] std::optional<kit::Image> draw(const RegionPicture& picture,
-                                             double metres_per_pixel,
-                                             const Underlay* under = nullptr);
+[[nodiscard]] cli::Result<kit::Image> draw(const RegionPicture& picture,
+                                           double metres_per_pixel,
+                                           const Underlay* under = nullptr);
 
 }  // namespace drtv::tool

@@ -1,11 +1,11 @@
 #include "relight_options.h"
 
+#include "cli/option_checks.h"
 #include "kit/light_options.h"
-#include "kit/option_checks.h"
 
 namespace drtv::tool {
 
-void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& run) {
+void add_relight(CLI::App& app, RelightRequest& request, std::function<cli::Result<cli::ExitCode>()>& run) {
     CLI::App* relight = app.add_subcommand("relight", "The ambient light at places, as a game gets it");
     relight->add_option("DIR", request.folder, "A folder of sector files, or one file")->required();
     CLI::Option* at = relight->add_option("--at", request.at, "A place, in metres")->type_name("x,y,z");
@@ -20,7 +20,7 @@ void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& r
     at->needs(normal)->excludes(points);
     normal->needs(at);
     relight->add_option("--by", request.by, "Which probes: nearest, trilinear, volume")
-        ->check(kit::one_of({"nearest", "trilinear", "volume"}))
+        ->check(cli::one_of({"nearest", "trilinear", "volume"}))
         ->capture_default_str();
     CLI::Option* camera =
         relight
@@ -29,14 +29,14 @@ void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& r
     CLI::Option* encoding =
         relight
             ->add_option("--encoding", request.encoding, "Of the volume's texels: rgba8, rgba8-sqrt, rgba16f")
-            ->check(kit::one_of({"rgba8", "rgba8-sqrt", "rgba16f"}))
+            ->check(cli::one_of({"rgba8", "rgba8-sqrt", "rgba16f"}))
             ->capture_default_str();
     relight
         ->add_option(
             "--offset",
             request.offset_m,
             "Metres along the normal at which probes and interiors are asked (0; with --by volume 1)")
-        ->check(kit::finite_number());
+        ->check(cli::finite_number());
     relight->add_flag_callback(
         "--no-interiors",
         [&request] { request.interiors = false; },

@@ -10,6 +10,6 @@
 namespace drtv::tool {
 
 // Sets `run` when the command is on the line.
-void add_relight(CLI::App& app, RelightRequest& request, std::function<int()>& run);
+void add_relight(CLI::App& app, RelightRequest& request, std::function<cli::Result<cli::ExitCode>()>& run);
 
 }  // namespace drtv::tool

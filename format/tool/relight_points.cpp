@@ -1,7 +1,5 @@
 #include "relight_points.h"
 
-#include "commands.h"
-#include "kit/exit_code.h"
 #include "kit/files.h"
 #include "kit/number_list.h"
 
@@ -38,66 +36,63 @@ std::optional<Double3> triple(const json& object, const char* name) {
     return numbers;
 }
 
-// What is wrong with a line; empty where it gave a point.
-std::string read_line(std::string_view line, std::vector<RelightPoint>& points) {
+cli::Result<RelightPoint> read_line(std::string_view line) {
+    const auto wrong = [](std::string what) { return cli::fail(cli::exit_usage, std::move(what)); };
     const json object = json::parse(line, nullptr, false);
     if (object.is_discarded() || !object.is_object())
-        return R"(it must be a JSON object such as {"at":[0,0,2],"normal":[0,0,1]})";
+        return wrong(R"(it must be a JSON object such as {"at":[0,0,2],"normal":[0,0,1]})");
     for (const auto& member : object.items()) {
         if (member.key() != "at" && member.key() != "normal")
-            return "\"" + member.key() + "\" is unknown: there are at and normal";
+            return wrong("\"" + member.key() + "\" is unknown: there are at and normal");
     }
     const auto at = triple(object, "at");
     if (!at)
-        return "\"at\" must be three numbers";
+        return wrong("\"at\" must be three numbers");
     const auto normal = triple(object, "normal");
     if (!normal)
-        return "\"normal\" must be three numbers";
+        return wrong("\"normal\" must be three numbers");
     const auto direction = unit(*normal);
     if (!direction)
-        return "\"normal\" has no length";
-    points.push_back({*at, *direction});
-    return {};
+        return wrong("\"normal\" has no length");
+    return RelightPoint{*at, *direction};
 }
 
 }  // namespace
 
-bool read_point(const std::string& at, const std::string& normal, std::vector<RelightPoint>& points) {
+cli::Result<std::vector<RelightPoint>> read_point(const std::string& at, const std::string& normal) {
     const auto place = kit::number_list(at, 3);
-    if (!place) {
-        kit::complain("relight: --at takes x,y,z, not \"" + at + "\"");
-        return false;
-    }
+    if (!place)
+        return cli::fail(cli::exit_usage, "relight: --at takes x,y,z, not \"" + at + "\"");
     const auto numbers = kit::number_list(normal, 3);
     const auto direction = numbers ? unit({(*numbers)[0], (*numbers)[1], (*numbers)[2]}) : std::nullopt;
     if (!direction) {
-        kit::complain("relight: --normal takes x,y,z of some length, not \"" + normal + "\"");
-        return false;
+        return cli::fail(cli::exit_usage,
+                         "relight: --normal takes x,y,z of some length, not \"" + normal + "\"");
     }
-    points.push_back({{(*place)[0], (*place)[1], (*place)[2]}, *direction});
-    return true;
+    return std::vector{RelightPoint{{(*place)[0], (*place)[1], (*place)[2]}, *direction}};
 }
 
-int read_points(const std::string& path, std::vector<RelightPoint>& points) {
-    const kit::TextRead file = path == "-" ? kit::read_standard_input() : kit::read_text(path);
-    if (!file.error.empty()) {
-        kit::complain(file.error);
-        return kit::exit_unreadable;
-    }
-    std::string_view rest = file.text;
+cli::Result<std::vector<RelightPoint>> read_points(const std::string& path) {
+    const auto file = path == "-" ? kit::read_standard_input() : kit::read_text(path);
+    if (!file)
+        return tl::unexpected(file.error());
+    std::vector<RelightPoint> points;
+    std::string_view rest = *file;
     for (std::size_t number = 1; !rest.empty(); ++number) {
         const std::size_t end = std::min(rest.find('\n'), rest.size());
         const std::string_view line = rest.substr(0, end);
         rest.remove_prefix(std::min(end + 1, rest.size()));
         if (line.find_first_not_of(" \t\r") == std::string_view::npos)
             continue;
-        if (const std::string wrong = read_line(line, points); !wrong.empty()) {
+        const auto point = read_line(line);
+        if (!point) {
             const std::string where = path == "-" ? "standard input" : path;
-            kit::complain(where + ", line " + std::to_string(number) + ": " + wrong);
-            return kit::exit_usage;
+            return cli::fail(point.error().code,
+                             where + ", line " + std::to_string(number) + ": " + point.error().sentence);
         }
+        points.push_back(*point);
     }
-    return kit::exit_valid;
+    return points;
 }
 
 }  // namespace drtv::tool

@@ -1,6 +1,8 @@
 // The places that `drtv relight` is asked for.
 #pragma once
 
+#include "cli/failure.h"
+
 #include <drtv/conventions.h>
 
 #include <string>
@@ -13,14 +15,12 @@ struct RelightPoint {
     Float3 normal{};  // unit
 };
 
-// One point from arguments, "x,y,z" each. False, and a complaint, where one is wrong.
-[[nodiscard]] bool read_point(const std::string& at,
-                              const std::string& normal,
-                              std::vector<RelightPoint>& points);
+// One point from arguments, "x,y,z" each.
+[[nodiscard]] cli::Result<std::vector<RelightPoint>> read_point(const std::string& at,
+                                                                const std::string& normal);
 
 // A JSON object per line, {"at": [x, y, z], "normal": [x, y, z]}, of a file or, for "-", of standard input;
-// empty lines do not count. Gives the exit code: not exit_valid, and a complaint with the line's number,
-// where one is wrong.
-[[nodiscard]] int read_points(const std::string& path, std::vector<RelightPoint>& points);
+// empty lines do not count. Where a line is wrong, the sentence has its number.
+[[nodiscard]] cli::Result<std::vector<RelightPoint>> read_points(const std::string& path);
 
 }  // namespace drtv::tool

@@ -268,7 +268,7 @@ class Differ {
 
 }  // namespace
 
-void Change::add(double difference, const std::string& where) {
+void QuantityChange::add(double difference, const std::string& where) {
     ++count;
     squares += difference * difference;
     if (std::abs(difference) <= largest)
@@ -277,7 +277,7 @@ void Change::add(double difference, const std::string& where) {
     at = where;
 }
 
-void Change::merge(const Change& other, const std::string& prefix) {
+void QuantityChange::merge(const QuantityChange& other, const std::string& prefix) {
     count += other.count;
     squares += other.squares;
     if (other.largest <= largest)
@@ -286,7 +286,7 @@ void Change::merge(const Change& other, const std::string& prefix) {
     at = prefix + other.at;
 }
 
-double Change::rms() const {
+double QuantityChange::rms() const {
     return count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
 }
 

@@ -15,14 +15,14 @@
 namespace drtv::tool {
 
 // Differences of one quantity over all its numbers, decoded.
-struct Change {
+struct QuantityChange {
     double largest = 0;
     double squares = 0;
     std::size_t count = 0;
     std::string at;  // where the largest is: "probe[3].transfer.g[2][0]", by the second sector's index
 
     void add(double difference, const std::string& where);
-    void merge(const Change& other, const std::string& prefix);
+    void merge(const QuantityChange& other, const std::string& prefix);
     [[nodiscard]] double rms() const;
 };
 
@@ -60,7 +60,7 @@ struct SectorDiff {
     std::vector<std::string> groups_only_first;
     std::vector<std::string> groups_only_second;
     bool grid_place = false;
-    std::array<Change, quantity_count> changes;
+    std::array<QuantityChange, quantity_count> changes;
 
     [[nodiscard]] bool equal() const;
 };

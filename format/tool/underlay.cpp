@@ -1,6 +1,5 @@
 #include "underlay.h"
 
-#include "kit/exit_code.h"
 #include "kit/files.h"
 #include "kit/number_list.h"
 
@@ -9,27 +8,20 @@
 
 namespace drtv::tool {
 
-std::optional<Underlay> Underlay::read(const std::string& path, int& exit_code) {
-    const kit::TextRead file = kit::read_text(path);
-    if (!file.error.empty()) {
-        kit::complain(file.error);
-        exit_code = kit::exit_unreadable;
-        return std::nullopt;
-    }
-    exit_code = kit::exit_invalid;
-    const std::span png(reinterpret_cast<const std::uint8_t*>(file.text.data()), file.text.size());
-    std::string why;
-    std::optional<kit::Image> image = kit::decode_png(png, why);
-    if (!image) {
-        kit::complain(path + ": " + why);
-        return std::nullopt;
-    }
+cli::Result<Underlay> Underlay::read(const std::string& path) {
+    const auto file = kit::read_text(path);
+    if (!file)
+        return tl::unexpected(file.error());
+    const std::span png(reinterpret_cast<const std::uint8_t*>(file->data()), file->size());
+    auto image = kit::decode_png(png);
+    if (!image)
+        return cli::fail(image.error().code, path + ": " + image.error().sentence);
     const auto text = kit::png_text(png, kit::world_rectangle_key);
     const auto world = kit::number_list(text.value_or(""), 4);
     if (!world || !((*world)[0] < (*world)[2] && (*world)[1] < (*world)[3])) {
-        kit::complain(
+        return cli::fail(
+            cli::exit_invalid,
             path + " does not say which part of the world it shows; bakerd render --top makes such pictures");
-        return std::nullopt;
     }
     return Underlay(std::move(*image), {(*world)[0], (*world)[1], (*world)[2], (*world)[3]});
 }

@@ -5,16 +5,15 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 
 namespace drtv::tool {
 
 class Underlay {
   public:
-    // A PNG that says which part of the world it shows, as `bakerd render --top` makes them. Nothing, and a
-    // complaint with `exit_code` set, where it is none.
-    [[nodiscard]] static std::optional<Underlay> read(const std::string& path, int& exit_code);
+    // A PNG that says which part of the world it shows, as `bakerd render --top` makes them. Fails
+    // where it is none.
+    [[nodiscard]] static cli::Result<Underlay> read(const std::string& path);
 
     // The three bytes at a place in metres; null outside.
     [[nodiscard]] const std::uint8_t* at(double x_m, double y_m) const;

@@ -8,7 +8,7 @@
 
 namespace drtv::test {
 
-BakedMap::BakedMap(const GltfBuilder& builder, const bake::Settings& settings,
+BakedMap::BakedMap(const GltfBuilder& builder, const settings::BakeSettings& settings,
                    const std::vector<map::SectorCoordinate>& sectors) {
     world_ = open_world(builder);
     const trace::FloatMode float_mode;

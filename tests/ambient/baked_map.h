@@ -1,10 +1,10 @@
 // A map baked in this process and loaded as a game loads it.
 #pragma once
 
-#include "bakerd/bake/settings.h"
 #include "bakerd/bake/world.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/map/map.h"
+#include "settings/bake_settings.h"
 #include "tests/map/gltf_builder.h"
 #include "tests/runtime/sets.h"
 
@@ -16,7 +16,7 @@ namespace drtv::test {
 class BakedMap {
   public:
     // All of the map's sectors, or those asked for.
-    BakedMap(const GltfBuilder& builder, const bake::Settings& settings,
+    BakedMap(const GltfBuilder& builder, const settings::BakeSettings& settings,
              const std::vector<map::SectorCoordinate>& sectors = {});
 
     [[nodiscard]] const map::Map& map() const { return world_->map(); }

@@ -17,8 +17,8 @@
 namespace drtv::test {
 namespace {
 
-bake::Settings with_local_transfer() {
-    bake::Settings settings;
+settings::BakeSettings with_local_transfer() {
+    settings::BakeSettings settings;
     settings.rays = 64;
     settings.local_transfer = true;
     settings.local_bounces = 2;
@@ -139,7 +139,7 @@ TEST(Lamps, OverAPlaneBounceAsMuchAsTheyShould) {
 // A room keeps light that open ground loses, which the factor for a lamp's place does not know.
 TEST(Lamps, InARoomBounceAboutAsMuchAsTheyShould) {
     const TwoRooms rooms = two_rooms({.shift_m = {0.3f, 0.7f, 0}});
-    bake::Settings settings = with_local_transfer();
+    settings::BakeSettings settings = with_local_transfer();
     settings.min_distance_m = 2;
     const BakedMap map(rooms.source.b, settings, {{0, 0}});
     const auto receivers = receivers_of(map, rooms.west_low, rooms.west_high);

@@ -16,8 +16,8 @@ double accurate_over_literal(const Judgement& judgement, const std::string& what
            find(judgement.at_probes, "literal" + what).median();
 }
 
-bake::Settings fine() {
-    bake::Settings settings;
+settings::BakeSettings fine() {
+    settings::BakeSettings settings;
     settings.rays = 4096;
     return settings;
 }

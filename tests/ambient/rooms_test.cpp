@@ -67,8 +67,8 @@ std::vector<TwoRoomsSettings> houses(const TwoRoomsSettings& house) {
     return all;
 }
 
-bake::Settings quick() {
-    bake::Settings settings;
+settings::BakeSettings quick() {
+    settings::BakeSettings settings;
     settings.rays = 256;
     settings.min_distance_m = 3;
     settings.local_transfer = true;

@@ -89,7 +89,7 @@ SceneSource talk_scene() {
 }
 
 BakedMap baked_like_talk_scene(const GltfBuilder& builder) {
-    bake::Settings settings;
+    settings::BakeSettings settings;
     settings.rays = 512;
     settings.min_distance_m = 4;
     settings.local_transfer = true;

@@ -11,7 +11,7 @@ namespace drtv::test {
 namespace {
 
 std::vector<std::string> warnings_of(const GltfBuilder& b) {
-    bake::Settings settings;
+    settings::BakeSettings settings;
     settings.rays = 256;
     const auto baked = bake::bake_sector(*open_world(b), {0, 0}, settings);
     return baked.value().warnings;

@@ -1,4 +1,4 @@
-// The same bytes whatever the threads, the order, and what else is in the scene (DESIGN, promise 1).
+// The same bytes whatever the threads, the order, and what else is in the scene (docs/design.md, promise 1).
 #include "bakerd/bake/sector_bake.h"
 #include "tests/bake/worlds.h"
 
@@ -19,8 +19,8 @@ GltfBuilder with_a_tower_far_away() {
     return b;
 }
 
-bake::Settings few_rays() {
-    bake::Settings settings;
+settings::BakeSettings few_rays() {
+    settings::BakeSettings settings;
     settings.rays = 64;
     settings.reach_m = 80;
     settings.local_transfer = true;
@@ -28,8 +28,8 @@ bake::Settings few_rays() {
     return settings;
 }
 
-bake::Settings until_good_enough() {
-    bake::Settings settings = few_rays();
+settings::BakeSettings until_good_enough() {
+    settings::BakeSettings settings = few_rays();
     settings.rays = 1024;
     settings.error = 0.03f;
     return settings;
@@ -37,7 +37,7 @@ bake::Settings until_good_enough() {
 
 using Files = std::map<map::SectorCoordinate, std::vector<std::uint8_t>>;
 
-Files bake_all(bake::World& world, const bake::Settings& settings, bool backwards) {
+Files bake_all(bake::World& world, const settings::BakeSettings& settings, bool backwards) {
     std::vector<map::SectorCoordinate> sectors;
     for (std::int32_t j = -1; j <= 1; ++j) {
         for (std::int32_t i = -1; i <= 1; ++i)
@@ -56,7 +56,7 @@ Files bake_all(bake::World& world, const bake::Settings& settings, bool backward
 }
 
 TEST(Determinism, ThreadsAndOrderDoNotMatter) {
-    for (const bake::Settings& settings : {few_rays(), until_good_enough()}) {
+    for (const settings::BakeSettings& settings : {few_rays(), until_good_enough()}) {
         Files one, many;
         {
             const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);

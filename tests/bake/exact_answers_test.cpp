@@ -1,4 +1,4 @@
-// The exact answers of DESIGN section 2, at the ray counts users bake with.
+// The exact answers of docs/design.md, section 2, at the ray counts users bake with.
 #include "bakerd/bake/sector_bake.h"
 #include "tests/bake/worlds.h"
 
@@ -142,7 +142,7 @@ TEST(ExactAnswers, BakedPlaneSectorHoldsThemInItsFile) {
     GltfBuilder b;
     b.add_node({.mesh = b.add_mesh(ground(1000), b.add_material({.colour = {0.5f, 0.25f, 0.125f, 1}}))});
     const auto world = open_world(b);
-    bake::Settings settings;
+    settings::BakeSettings settings;
     settings.rays = 256;
     const auto baked = bake::bake_sector(*world, {0, 0}, settings);
     ASSERT_TRUE(baked) << baked.error();

@@ -16,8 +16,8 @@
 namespace drtv::test {
 namespace {
 
-bake::Settings quick() {
-    bake::Settings settings;
+settings::BakeSettings quick() {
+    settings::BakeSettings settings;
     settings.rays = 16;
     return settings;
 }

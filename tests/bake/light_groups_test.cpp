@@ -54,7 +54,7 @@ std::optional<std::string> none(const std::string&) {
 }
 
 Sector baked(const GltfBuilder& b) {
-    bake::Settings settings;
+    settings::BakeSettings settings;
     settings.rays = 256;
     auto sector = bake::bake_sector(*open_world(b), {0, 0}, settings);
     EXPECT_TRUE(sector) << sector.error();
@@ -186,7 +186,7 @@ TEST(LightGroups, MoreThanAFileHoldsAreNamed) {
         }
         return open_world(b);
     };
-    bake::Settings settings;
+    settings::BakeSettings settings;
     settings.rays = 64;
     EXPECT_TRUE(bake::bake_sector(*world_with(8, false), {0, 0}, settings));
     const auto failed = bake::bake_sector(*world_with(9, false), {0, 0}, settings);

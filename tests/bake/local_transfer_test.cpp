@@ -151,8 +151,8 @@ TEST(LocalTransfer, ClosedRoomsExchangeNothing) {
     }
 }
 
-bake::Settings settings_without_local() {
-    bake::Settings settings;
+settings::BakeSettings settings_without_local() {
+    settings::BakeSettings settings;
     settings.rays = 64;
     return settings;
 }
@@ -161,7 +161,7 @@ TEST(LocalTransfer, EachReceiverHasItsNearestSources) {
     GltfBuilder b;
     b.place(ground(150), "", b.add_material({.colour = {0.5f, 0.5f, 0.5f, 1}}));
     const auto world = open_world(b);
-    bake::Settings settings = settings_without_local();
+    settings::BakeSettings settings = settings_without_local();
     settings.local_transfer = true;
     settings.local_rays = 16;
     auto baked = bake::bake_sector(*world, {0, 0}, settings);

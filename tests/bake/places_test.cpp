@@ -17,8 +17,8 @@ namespace {
 
 using Places = std::vector<glm::vec3>;
 
-bake::Settings draft(float min_distance_m = 6) {
-    bake::Settings settings;
+settings::BakeSettings draft(float min_distance_m = 6) {
+    settings::BakeSettings settings;
     settings.rays = 64;
     settings.reach_m = 128;
     settings.min_distance_m = min_distance_m;

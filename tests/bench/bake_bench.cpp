@@ -32,7 +32,7 @@ struct Setup {
     [[nodiscard]] std::size_t ray_count() const { return rays.paths.size() + rays.shadows.size(); }
     std::unique_ptr<RawEmbree> embree;
     map::SectorCoordinate sector;  // of the probes
-    bake::Settings settings;
+    settings::BakeSettings settings;
 };
 
 std::optional<Setup> setup;
@@ -57,7 +57,7 @@ bool prepare(const std::string& path) {
     setup->world = std::move(world);
     setup->sectors = setup->world->sectors();
     const map::SectorCoordinate middle = setup->sector = setup->sectors[setup->sectors.size() / 2];
-    bake::Settings few = setup->settings;
+    settings::BakeSettings few = setup->settings;
     few.rays = 16;
     const Sector sector = bake::bake_sector(*setup->world, middle, few).value().sector;
     for (std::size_t p = 0; p < sector.probes.size() && p < max_probes; ++p) {

@@ -4,6 +4,7 @@
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/local_encoding.h"
 #include "bakerd/bake/sector_bake.h"
+#include "settings/table.h"
 #include "tests/bench/bench_world.h"
 
 #include <algorithm>
@@ -52,7 +53,7 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
     if (!world)
         return 1;
     const map::SectorCoordinate at = chosen.value_or(middle_sector(*world));
-    bake::Settings settings = bake::preset("pc").value();
+    settings::BakeSettings settings = settings::preset("pc")->bake;
     const auto scene = world->scene_for(at, bake::scene_distance_m(world->placement_tags(), settings));
     std::vector<std::shared_ptr<const bake::Placed>> around;
     std::vector<const bake::PlacedSector*> neighbours;
@@ -68,7 +69,7 @@ int run(const std::string& path, std::optional<map::SectorCoordinate> chosen) {
     const bake::LocalSources sources = bake::local_sources(placed, neighbours, settings.reach_m);
     const std::size_t receivers = placed.positions.size();
 
-    bake::Settings rest = settings;
+    settings::BakeSettings rest = settings;
     rest.local_transfer = false;
     static_cast<void>(bake::bake_sector(*world, at, rest).value());
     std::vector<double> rest_seconds;

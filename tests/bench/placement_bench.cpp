@@ -21,7 +21,7 @@ struct Totals {
     std::size_t probes = 0, candidates = 0, moved = 0, dropped = 0, buried_cells = 0, blind_cells = 0;
 };
 
-void add_sector(bake::World& world, map::SectorCoordinate sector, const bake::Settings& settings,
+void add_sector(bake::World& world, map::SectorCoordinate sector, const settings::BakeSettings& settings,
                 Totals& totals) {
     const auto around = world.surroundings(sector, settings);
     const double start = seconds();
@@ -33,8 +33,8 @@ void add_sector(bake::World& world, map::SectorCoordinate sector, const bake::Se
     std::vector<placement::GridProbe> probes;
     for (const placement::Position& position : (*placed)->positions)
         probes.push_back({position, {}});
-    const placement::ProbeGrid grid = placement::build_grid(
-        sector.i, sector.j, probes, bake::surroundings_of(*around.scene, settings.reach_m));
+    const placement::ProbeGrid grid =
+        placement::build_grid(sector.i, sector.j, probes, bake::queries_of(*around.scene, settings.reach_m));
     const double indexed_at = seconds();
     totals.grid_s += indexed_at - placed_at;
     const auto baked = bake::bake_sector(world, sector, settings);
@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
     bench::Totals totals;
     std::size_t count = 0;
     for (std::size_t n = 0; n < sectors.size(); n += step, ++count)
-        bench::add_sector(*world, sectors[n], bake::Settings{}, totals);
+        bench::add_sector(*world, sectors[n], settings::BakeSettings{}, totals);
     const double all_s = totals.place_s + totals.bake_s;
     std::printf(
         "%zu sectors, %zu probes of %zu candidates, %zu moved, %zu dropped; of %zu cells %zu in solids, "

@@ -95,7 +95,7 @@ int run(const std::string& path) {
     if (!world)
         return 1;
     const map::SectorCoordinate at = middle_sector(*world);
-    const bake::Settings settings;
+    const settings::BakeSettings settings;
     const auto scene = world->scene_for(at, bake::scene_distance_m(world->placement_tags(), settings));
     const auto placed = world->placed(at, settings, *scene);
     const std::vector<placement::Position>& probes = (*placed)->positions;

@@ -8,6 +8,7 @@
 #include "bakerd/bake/sector_file.h"
 #include "bakerd/reuse/footprint_record.h"
 #include "bakerd/reuse/rebake.h"
+#include "settings/table.h"
 #include "tests/bake/worlds.h"
 #include "tests/bench/bench_world.h"
 #include "tests/trace/scenes.h"
@@ -147,12 +148,12 @@ std::vector<std::uint64_t> answers_of_rays(int count, unsigned seed) {
         }
         if (n > 0)
             continue;
-        std::vector<trace::ColumnHit> column;
+        std::vector<placement::ColumnHit> column;
         for (int y = -20; y <= 20; ++y) {
             for (int x = -20; x <= 20; ++x) {
                 BitHash hash;
                 scene->column({x, y}, column);
-                for (const trace::ColumnHit& hit : column)
+                for (const placement::ColumnHit& hit : column)
                     hash.add(hit.z_m);
                 hash.add(scene->distance_to_surface({x, y, 1}, 100));
                 hash.add(static_cast<std::uint32_t>(
@@ -177,8 +178,8 @@ std::vector<std::uint64_t> answers_of_rays(int count, unsigned seed) {
 constexpr Clutter village{
     .low_m = -30, .high_m = 90, .ground_m = 120, .blocks = 12, .crowns = 30, .lamps = 6};
 
-std::vector<bake::Settings> settings_for(bool small) {
-    bake::Settings draft = bake::preset("draft").value(), pc = bake::preset("pc").value();
+std::vector<settings::BakeSettings> settings_for(bool small) {
+    settings::BakeSettings draft = settings::preset("draft")->bake, pc = settings::preset("pc")->bake;
     draft.rays = small ? 64 : 128;
     pc.rays = small ? 32 : 64;
     pc.local_rays = 32;
@@ -191,7 +192,7 @@ std::vector<std::uint8_t> baked_bytes(bake::World& world, const std::vector<map:
                                       bool small) {
     std::vector<std::vector<std::uint8_t>> parts(sectors.size());
     tbb::parallel_for(std::size_t{0}, sectors.size(), [&](std::size_t n) {
-        for (const bake::Settings& settings : settings_for(small)) {
+        for (const settings::BakeSettings& settings : settings_for(small)) {
             const auto rebake = reuse::bake_and_record(world, sectors[n], settings).value();
             std::vector<std::string> warnings;
             const std::vector<std::uint8_t> file = bake::encode_sector(rebake.baked.sector, warnings).value(),

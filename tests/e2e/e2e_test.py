@@ -22,6 +22,8 @@ OPTIONS = argparse.Namespace(bin="", data="")
 # 36 sectors around the crater and the inland village: ground, jungle, huts, manual probes, the no_probes box.
 REGION = ["--region", "-130,-190,250,120"]
 FEW_RAYS = ["--preset", "draft", "--set", "rays=64"]
+# docs/exit-codes.md
+USAGE, UNREADABLE, INVALID, JOB_FAILED, UNFINISHED, SERVER, TIMEOUT = 1, 2, 3, 5, 6, 7, 8
 
 
 def world_translation(nodes, number):
@@ -81,6 +83,27 @@ def write_map(path, **quads):
 # In one sector, with a wall in its north; the wall's other side comes by turning the order round.
 LAWN = [(1, 1, 0), (31, 1, 0), (31, 31, 0), (1, 31, 0)]
 WALL = [(1, 30, 0), (31, 30, 0), (31, 30, 16), (1, 30, 16)]
+
+
+def with_lamps(path, groups):
+    """The map with a lamp over the lawn for each of so many light groups."""
+    with open(path, encoding="utf-8") as file:
+        document = json.load(file)
+    lamp = {"type": "point", "intensity": 1000}
+    extension = "KHR_lights_punctual"
+    document.update(extensionsUsed=[extension], extensions={extension: {"lights": [lamp]}})
+    for n in range(groups):
+        document["scenes"][0]["nodes"].append(len(document["nodes"]))
+        document["nodes"].append(
+            {
+                "translation": [3 + 3 * n, 3, -16],
+                "extensions": {extension: {"light": 0}},
+                "extras": {"light_group": f"group {n}"},
+            }
+        )
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(document, file)
+    return path
 
 
 def has_ended(pid):
@@ -414,7 +437,7 @@ class Database(FarmTest):
         first = self.pulled(daemon, island, *region, name="first")
         daemon.stop()
         # One character of the settings of a job that goes on, and the file of a result.
-        self.change("UPDATE job SET state = 0, bounces = bounces + 1")
+        self.change("UPDATE job SET state = 0, setting_bounces = setting_bounces + 1")
         self.change(
             "UPDATE result SET file = (SELECT file FROM result WHERE i = 1 AND j = 1) WHERE i = 0 AND j = 0"
         )
@@ -437,7 +460,9 @@ class Database(FarmTest):
             for page in range(1, os.path.getsize(path) // 4096):
                 file.seek(page * 4096)
                 file.write(b"\x5a" * 600)
-        with self.assertRaisesRegex(AssertionError, "is damaged .*: move it away, and jobs begin anew"):
+        with self.assertRaisesRegex(
+            AssertionError, "is damaged .*: move it away, and start again without its jobs"
+        ):
             daemon.start()
         os.remove(path)
         daemon.start()
@@ -451,34 +476,36 @@ class Client(FarmTest):
         empty = self.farm.path("empty")
         os.mkdir(empty)
         cases = [
-            (["submit", "/nowhere/map.glb"], ["/nowhere/map.glb", "does not exist"]),
-            (["submit", empty], ["holds no .glb or .gltf file"]),
-            (["submit", "/dev/zero"], ["/dev/zero", "not a regular file"]),
-            (["submit", island, "--pull", island], ["cannot make the folder"]),
-            (["submit"], ["MAP"]),
-            (["sumbit", island], ["sumbit"]),
-            (["submit", island, "--preset", "ultra"], ["'ultra'", "draft, console and pc"]),
-            (["submit", island, "--set", "rays=none"], ["rays", "'none'"]),
-            (["submit", island, "--set", "rays=8"], ["16 to 65536"]),
-            (["submit", island, "--set", "shadows=1"], ["'shadows' is unknown"]),
-            (["submit", island, "--set", "rays"], ["key=value"]),
-            (["submit", island, "--region", "1,2,3"], ["X0,Y0,X1,Y1"]),
-            (["submit", island, "--region", "9,0,1,1"], ["is empty"]),
-            (["submit", island, "--region", "nan,0,1,1"], ["not a number of metres"]),
-            (["submit", island, "--region", "9000,9000,9001,9001"], ["touches no sector with ground"]),
-            (["status", "7"], ["there is no job 7"]),
-            (["watch", "seven"], ["'jobs/seven' is not the name of a job"]),
-            (["cancel", "7"], ["there is no job 7"]),
-            (["pull", "7", "--out", self.farm.path("out")], ["there is no job 7"]),
+            (UNREADABLE, ["submit", "/nowhere/map.glb"], ["/nowhere/map.glb", "does not exist"]),
+            (UNREADABLE, ["submit", empty], ["holds no .glb or .gltf file"]),
+            (UNREADABLE, ["submit", "/dev/zero"], ["/dev/zero", "not a regular file"]),
+            (UNREADABLE, ["submit", island, "--pull", island], ["cannot make the folder"]),
+            (USAGE, ["submit"], ["MAP"]),
+            (USAGE, ["sumbit", island], ["sumbit"]),
+            (USAGE, ["submit", island, "--preset", "ultra"], ['there is no preset "ultra"']),
+            (USAGE, ["submit", island, "--set", "rays=none"], ["rays", "'none'"]),
+            (USAGE, ["submit", island, "--set", "rays=8"], ["16 to 65536"]),
+            (USAGE, ["submit", island, "--set", "shadows=1"], ['"shadows"']),
+            (USAGE, ["submit", island, "--set", "rays"], ["key=value"]),
+            (USAGE, ["submit", island, "--region", "1,2,3"], ["X0,Y0,X1,Y1"]),
+            (USAGE, ["submit", island, "--region", "9,0,1,1"], ["is empty"]),
+            (USAGE, ["submit", island, "--region", "nan,0,1,1"], ["not a number of metres"]),
+            (USAGE, ["submit", island, "--region", "9000,9000,9001,9001"], ["touches no sector with ground"]),
+            (USAGE, ["status", "7"], ["there is no job 7"]),
+            (USAGE, ["watch", "seven"], ["'jobs/seven' is not the name of a job"]),
+            (USAGE, ["cancel", "7"], ["there is no job 7"]),
+            (USAGE, ["pull", "7", "--out", self.farm.path("out")], ["there is no job 7"]),
         ]
-        for arguments, parts in cases:
+        for status, arguments, parts in cases:
             with self.subTest(arguments=arguments):
-                self.assert_sentence(self.farm.bake(daemon, *arguments), *parts)
+                self.assert_sentence(self.farm.bake(daemon, *arguments), *parts, status=status)
         self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
 
     def test_absent_daemon_is_told(self):
         self.assert_sentence(
-            self.farm.run("bake", "--server", "127.0.0.1:1", "list"), "cannot reach bakerd at 127.0.0.1:1"
+            self.farm.run("bake", "--server", "127.0.0.1:1", "list"),
+            "cannot reach bakerd at 127.0.0.1:1",
+            status=SERVER,
         )
 
     def test_interrupted_client_leaves_the_job_running(self):
@@ -503,9 +530,49 @@ class Client(FarmTest):
         self.assertEqual(job["state"], "cancelled")
         self.assertLess(job["sectors_done"], job["sectors_total"])
         pulled = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("some"))
-        self.assertEqual(pulled.returncode, 0, pulled.stderr)
+        self.assert_sentence(pulled, "job 1 was cancelled: ", status=UNFINISHED)
         self.assertGreaterEqual(len(os.listdir(self.farm.path("some"))), 1)
-        self.assertEqual(self.farm.bake(daemon, "watch", "1").returncode, 1)
+        self.assert_sentence(self.farm.bake(daemon, "watch", "1"), "job 1 was cancelled: ", status=UNFINISHED)
+
+    def test_a_job_that_is_not_over_is_no_success(self):
+        daemon = self.farm.daemon()
+        submitted = self.farm.bake(
+            daemon, "submit", self.island(), *REGION, "--set", "rays=65536", "--wait", "--timeout", "0.5"
+        )
+        self.assert_sentence(
+            submitted,
+            "job 1 has not ended after 0.5 s, and goes on; come back with: bake watch 1",
+            status=TIMEOUT,
+        )
+        watched = self.farm.bake(daemon, "--json", "watch", "1", "--timeout", "0.5")
+        self.assertEqual(watched.returncode, TIMEOUT, watched.stderr)
+        pulled = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("some"))
+        self.assert_sentence(pulled, "job 1 is not finished: ", status=UNFINISHED)
+        self.assertEqual(self.farm.job(daemon, 1)["state"], "running")
+
+    def test_a_failed_job_is_no_success_and_what_is_done_is_pulled(self):
+        daemon = self.farm.daemon()
+        path = with_lamps(
+            write_map(self.farm.path("lamps.gltf"), lawn=LAWN, far=[(x + 130, y, z) for x, y, z in LAWN]),
+            groups=9,
+        )
+        out = self.farm.path("out")
+        done = self.farm.bake(daemon, "submit", path, *FEW_RAYS, "--set", "reach=8", "--pull", out)
+        self.assert_sentence(done, "sectors failed; sector (0, 0)", "light groups", status=JOB_FAILED)
+        self.assertEqual(os.listdir(out), ["sector_2_0.drtv"])
+        self.assertEqual(self.farm.bake(daemon, "watch", "1").returncode, JOB_FAILED)
+        self.assertEqual(self.farm.bake(daemon, "pull", "1", "--out", out).returncode, JOB_FAILED)
+
+    def test_a_map_without_ground_is_no_success(self):
+        daemon = self.farm.daemon()
+        path = self.farm.path("empty.gltf")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write('{"asset": {"version": "2.0"}}')
+        self.assert_sentence(
+            self.farm.bake(daemon, "submit", path, "--wait"),
+            "the map has no ground, so there is nothing to bake",
+            status=INVALID,
+        )
 
     def test_json_is_one_object_a_line(self):
         daemon = self.farm.daemon()
@@ -547,7 +614,7 @@ class Client(FarmTest):
             done = self.farm.bake(
                 daemon, "submit", island, "--region", "0,0,400,1", *FEW_RAYS, "--pull", disk
             )
-            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertEqual(done.returncode, UNREADABLE, done.stdout)
             self.assertIn("No space left on device", done.stderr)
             for name in os.listdir(disk):
                 self.assertTrue(name.endswith(".drtv"), name)
@@ -560,27 +627,30 @@ class Daemon(FarmTest):
         port = self.farm.run(
             "bakerd", "serve", "--data", self.farm.path("other"), "--listen", daemon.address, timeout=20
         )
-        self.assert_sentence(port, f"cannot listen on {daemon.address}: the port is in use", status=1)
+        self.assert_sentence(
+            port, f"cannot listen on {daemon.address}: the port is in use", status=UNREADABLE
+        )
         folder = self.farm.run(
             "bakerd", "serve", "--data", self.farm.path("data"), "--listen", "127.0.0.1:0", timeout=20
         )
-        self.assert_sentence(folder, "in use by another bakerd", str(daemon.process.pid), status=1)
+        self.assert_sentence(folder, "in use by another bakerd", str(daemon.process.pid), status=UNREADABLE)
         unwritable = self.farm.run(
             "bakerd", "serve", "--data", "/proc/drtv", "--listen", "127.0.0.1:0", timeout=20
         )
-        self.assert_sentence(unwritable, "/proc/drtv", status=1)
+        self.assert_sentence(unwritable, "/proc/drtv", status=UNREADABLE)
 
     def test_wrong_arguments_are_told(self):
         for arguments, part in (
             (["serve"], "--data"),
             (["serve", "--data", "x", "--executor", "cloud"], "cloud"),
             (["serve", "--data", "x", "--threads", "-1"], "-1"),
-            (["fly"], "'fly'"),
-            (["serve", "--data", self.farm.path("x"), "--listen", "127.0.0.1:99999"], "127.0.0.1:99999"),
+            (["fly"], '"fly"'),
             (["serve", "--config", "/nowhere.ini"], "/nowhere.ini"),
         ):
             with self.subTest(arguments=arguments):
-                self.assert_sentence(self.farm.run("bakerd", *arguments, timeout=20), "bakerd: ", part)
+                self.assert_sentence(
+                    self.farm.run("bakerd", *arguments, timeout=20), "bakerd: ", part, status=USAGE
+                )
 
     def test_options_can_stand_in_a_file(self):
         config = self.farm.path("bakerd.ini")
@@ -613,7 +683,7 @@ class Daemon(FarmTest):
             daemon = farm_fixture.Daemon(OPTIONS.bin, self.farm.path("disk/data"))
             try:
                 done = self.farm.bake(daemon, "submit", island)
-                self.assert_sentence(done, "No space left on device", status=1)
+                self.assert_sentence(done, "No space left on device", status=SERVER)
                 self.assertEqual(self.farm.bake(daemon, "list").returncode, 0)
             finally:
                 daemon.kill()
@@ -623,7 +693,9 @@ class Daemon(FarmTest):
         broken = self.farm.path("broken.gltf")
         with open(broken, "w", encoding="utf-8") as file:
             file.write('{"asset": {"version": "2.0"}, "nodes": [{"mesh": 3}], "scenes": [{"nodes": [0]}]}')
-        self.assert_sentence(self.farm.bake(daemon, "submit", broken), "broken.gltf", "node 0", "mesh")
+        self.assert_sentence(
+            self.farm.bake(daemon, "submit", broken), "broken.gltf", "node 0", "mesh", status=INVALID
+        )
         with open(broken, "w", encoding="utf-8") as file:
             file.write(
                 '{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 3, "uri": "../secret.bin"}]}'
@@ -758,17 +830,20 @@ class Incremental(FarmTest):
                 "bakerd", "serve", "--data", self.farm.path("x"), "--cache-size", "much", timeout=20
             ),
             "--cache-size",
-            status=2,
+            status=USAGE,
         )
         self.assert_sentence(
             self.farm.bake(
                 daemon, "plan", island, "--png", self.farm.path("no/folder.png"), *REGION, *FEW_RAYS
             ),
             "no/folder.png",
-            status=1,
+            status=UNREADABLE,
         )
         self.assert_sentence(
-            self.farm.bake(daemon, "plan", island, "--set", "tolerance=2"), "tolerance", "0.0625", status=1
+            self.farm.bake(daemon, "plan", island, "--set", "tolerance=2"),
+            "tolerance",
+            "0.0625",
+            status=USAGE,
         )
 
 
@@ -850,7 +925,7 @@ class RealMaps(FarmTest):
                 )
                 if kind == "valid" and done.returncode == 0:
                     continue
-                self.assert_sentence(done, os.path.basename(path), status=1)
+                self.assert_sentence(done, os.path.basename(path), status=INVALID)
                 if kind == "valid":
                     with open(path, "rb") as document:
                         text = document.read()

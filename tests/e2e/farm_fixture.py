@@ -9,6 +9,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+import json_lines
+
 SOURCE_DIR = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 START_PATIENCE_S = 20
 
@@ -94,7 +97,7 @@ class Farm:
         self.scratch.cleanup()
 
     def run(self, program, *arguments, timeout=300, env=None):
-        return subprocess.run(
+        done = subprocess.run(
             [os.path.join(self.bin_dir, program), *arguments],
             stdin=subprocess.DEVNULL,
             capture_output=True,
@@ -103,6 +106,10 @@ class Farm:
             check=False,
             env={**os.environ, **(env or {})},
         )
+        if "--json" in arguments:
+            json_lines.check(program, arguments[0], done.stdout)
+            done.stderr = json_lines.messages_as_text(done.stderr)
+        return done
 
     def bake(self, daemon, *arguments, **named):
         return self.run("bake", "--server", daemon.address, *arguments, **named)

@@ -57,10 +57,9 @@ class BooksTest : public testing::Test {
         job.manifest = digest_of("map");
         job.inventory = digest_of("inventory");
         job.preset = "draft";
-        job.settings.rays = 99;
-        job.settings.reach_m = 0.3f;
-        job.region = Region{0, -1.5, 0.1, 1};
-        job.overrides = {{"rays", "99"}, {"reach", "0.3"}};
+        job.settings.bake.rays = 99;
+        job.settings.bake.reach_m = 0.3f;
+        job.region = JobRegion{0, -1.5, 0.1, 1};
         job.created_ms = 1000;
         write([&](Connection& connection) {
             insert_job(connection, job);

@@ -34,7 +34,7 @@ void say(const Answer& answer) {
 SectorResult baked(const BakeRequest& request) {
     SectorResult result;
     result.blobs.file = request.manifest;
-    result.file_bytes = request.settings.rays;
+    result.file_bytes = request.settings.bake.rays;
     result.probes = request.sector.j;
     result.rays = 7;
     return result;
@@ -59,12 +59,12 @@ void answer(std::uint64_t id, const BakeRequest& request) {
             return;
         case fake::fails_once:
             if (tries[request.sector.j]++ == 0)
-                return say({id, Failure{"not now", true}});
+                return say({id, RequestFailure{"not now", true}});
             break;
         case fake::always_later:
-            return say({id, Failure{"the disk is full", true}});
+            return say({id, RequestFailure{"the disk is full", true}});
         case fake::hopeless:
-            return say({id, Failure{"the sector is bad", false}});
+            return say({id, RequestFailure{"the sector is bad", false}});
         case fake::unknown_id:
             say({id + 1000000, baked(request)});
             break;
@@ -78,7 +78,7 @@ void answer(std::uint64_t id, const BakeRequest& request) {
 }
 
 void answer(std::uint64_t id, const AssessRequest&) {
-    say({id, Failure{"the fake worker has no opinion", false}});
+    say({id, RequestFailure{"the fake worker has no opinion", false}});
 }
 
 void answer(std::uint64_t id, const InspectRequest& request) {

@@ -78,15 +78,16 @@ class FarmTest : public testing::Test {
 
     // Quick to bake; other `rays`, other results.
     static JobRequest quick(const Digest& map, int rays = 16) {
-        return {map,
-                "draft",
-                {{"rays", std::to_string(rays)}, {"bounces", "0"}, {"reach", "8"}, {"min_distance", "16"}},
-                {},
-                ""};
+        settings::JobSettings settings;
+        settings.bake = {
+            .rays = static_cast<std::uint32_t>(rays), .bounces = 0, .reach_m = 8, .min_distance_m = 16};
+        return {map, "draft", settings, {}, ""};
     }
-    // Several seconds a sector.
+    // Several seconds per sector.
     static JobRequest endless(const Digest& map) {
-        return {map, "draft", {{"rays", "65536"}, {"bounces", "8"}, {"min_distance", "1"}}, {}, ""};
+        settings::JobSettings settings;
+        settings.bake = {.rays = 65536, .bounces = 8, .min_distance_m = 1};
+        return {map, "draft", settings, {}, ""};
     }
 
     JobView submit(const JobRequest& request) {
@@ -116,11 +117,11 @@ class FarmTest : public testing::Test {
         EXPECT_GE(view.row.ended_ms, view.row.created_ms);
     }
 
-    std::vector<SectorView> sectors(std::int64_t job) { return farm->list_sectors(job, 0, 1000).value(); }
+    std::vector<JobSectorView> sectors(std::int64_t job) { return farm->list_sectors(job, 0, 1000).value(); }
     std::vector<Digest> results(std::int64_t job) {
         std::vector<Digest> found;
-        const std::vector<SectorView> all = sectors(job);
-        for (const SectorView& sector : all)
+        const std::vector<JobSectorView> all = sectors(job);
+        for (const JobSectorView& sector : all)
             found.push_back(sector.row.file);
         return found;
     }
@@ -179,13 +180,10 @@ TEST_F(FarmTest, WrongRequestsAreRefusedAndLeaveNoJob) {
     JobRequest request = quick(map::digest_of(bytes_of("no map")));
     EXPECT_EQ(farm->create_job(request).error().code, store::ErrorCode::not_found);
     request = quick(map);
-    request.region = Region{1000, 1000, 1001, 1001};
+    request.region = JobRegion{1000, 1000, 1001, 1001};
     EXPECT_EQ(farm->create_job(request).error().code, store::ErrorCode::invalid_argument);
     request = quick(map);
     request.request_id = std::string(65, 'x');
-    EXPECT_EQ(farm->create_job(request).error().code, store::ErrorCode::invalid_argument);
-    request = quick(map);
-    request.preset = "best";
     EXPECT_EQ(farm->create_job(request).error().code, store::ErrorCode::invalid_argument);
     EXPECT_TRUE(farm->list_jobs(INT64_MAX, 10)->empty());
     for (const std::int64_t id : {0, -1, 7}) {
@@ -199,10 +197,10 @@ TEST_F(FarmTest, WrongRequestsAreRefusedAndLeaveNoJob) {
 
 TEST_F(FarmTest, ARegionBakesOnlyWhatItTouches) {
     JobRequest request = quick(create(ground_gltf(128))->id);
-    request.region = Region{70, 0, 71, 100};
+    request.region = JobRegion{70, 0, 71, 100};
     const JobView view = wait(submit(request).row.id);
     expect_succeeded(view, 2);
-    const std::vector<SectorView> all = sectors(view.row.id);
+    const std::vector<JobSectorView> all = sectors(view.row.id);
     EXPECT_EQ(all[0].row.sector, (map::SectorCoordinate{1, 0}));
     EXPECT_EQ(all[1].row.sector, (map::SectorCoordinate{1, 1}));
     EXPECT_TRUE(farm->get_sector(view.row.id, {1, 1}));
@@ -218,8 +216,8 @@ TEST_F(FarmTest, TwoJobsThatShareSectorsBakeEachOnce) {
     EXPECT_EQ(results(one.row.id), results(two.row.id));
     // Both saw the same bakes: the rays of each sector once.
     std::int64_t rays = 0;
-    const std::vector<SectorView> all = sectors(one.row.id);
-    for (const SectorView& sector : all)
+    const std::vector<JobSectorView> all = sectors(one.row.id);
+    for (const JobSectorView& sector : all)
         rays += sector.row.rays;
     EXPECT_EQ(first.rays, rays);
 }
@@ -248,7 +246,7 @@ TEST_F(FarmTest, CancelKeepsWhatIsDoneAndIsFinal) {
     EXPECT_EQ(farm->get_job(id)->row.state, JobState::cancelled);
 
     JobRequest done = quick(map);
-    done.region = Region{1, 1, 1, 1};
+    done.region = JobRegion{1, 1, 1, 1};
     expect_succeeded(wait(submit(done).row.id), 1);
     const std::int64_t whole = submit(quick(map)).row.id;
     EXPECT_GE(farm->cancel_job(whole)->row.sectors_done, 1);
@@ -320,7 +318,7 @@ TEST_F(FarmTest, AnotherMapFindsWhatStillHolds) {
     const PlanView same = farm->plan_job(quick(create(gltf + " ")->id)).value();
     EXPECT_EQ(same.plan.count(reuse::Verdict::hit), 4);
     JobRequest night = quick(create(gltf)->id);
-    night.overrides["tolerance"] = "0";
+    night.settings.tolerance = 0;
     const PlanView exact = farm->plan_job(night).value();
     EXPECT_EQ(exact.plan.count(reuse::Verdict::hit), 4);
     for (const PlannedSector& planned : exact.plan.sectors)
@@ -373,7 +371,7 @@ TEST_F(FarmTest, TheCacheKeepsToItsLimit) {
         EXPECT_TRUE(farm->blobs().has(result)) << "needed by a job that was running";
     // When nobody holds them any more, the next sector makes room.
     JobRequest corner = quick(map, 18);
-    corner.region = Region{1, 1, 1, 1};
+    corner.region = JobRegion{1, 1, 1, 1};
     wait(submit(corner).row.id);
     const CacheView left = farm->cache().value();
     EXPECT_LE(left.counts.bytes, left.limit_bytes);
@@ -391,8 +389,8 @@ TEST_F(FarmTest, ASectorAskedForAnewIsNotCountedTwiceByARunningJob) {
     const Digest map = create(ground_gltf(512))->id;
     const std::int64_t first = submit(quick(map, 2048)).row.id;
     wait(first, [](const JobView& view) { return view.row.sectors_done >= 2; });
-    const std::vector<SectorView> all = sectors(first);
-    for (const SectorView& sector : all) {
+    const std::vector<JobSectorView> all = sectors(first);
+    for (const JobSectorView& sector : all) {
         if (sector.row.state == SectorState::done)
             std::filesystem::remove(object(sector.row.file));
     }
@@ -413,7 +411,7 @@ TEST_F(FarmTest, AFailedSectorFailsTheJobAndAResubmitGivesItAnotherChance) {
     open();
     std::filesystem::remove(object(file));
     JobRequest corner = quick(map, 2048);
-    corner.region = Region{1, 1, 1, 1};
+    corner.region = JobRegion{1, 1, 1, 1};
     const JobView failed = wait(submit(corner).row.id);
     EXPECT_EQ(failed.row.state, JobState::failed);
     EXPECT_NE(failed.row.error.find("1 of 1 sectors failed; sector (0, 0): "), std::string::npos)

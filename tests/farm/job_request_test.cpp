@@ -20,7 +20,7 @@ Sectors ground() {
     return sectors;
 }
 
-void expect_chosen(const Region& region, Sectors expected) {
+void expect_chosen(const JobRegion& region, Sectors expected) {
     auto chosen = sectors_of(region, ground());
     ASSERT_TRUE(chosen) << chosen.error().message;
     std::sort(chosen->begin(), chosen->end());
@@ -28,7 +28,7 @@ void expect_chosen(const Region& region, Sectors expected) {
     EXPECT_EQ(*chosen, expected);
 }
 
-void expect_refused(const Region& region, const std::string& with) {
+void expect_refused(const JobRegion& region, const std::string& with) {
     const auto chosen = sectors_of(region, ground());
     ASSERT_FALSE(chosen) << with;
     EXPECT_EQ(chosen.error().code, store::ErrorCode::invalid_argument);
@@ -46,7 +46,7 @@ TEST(SectorsOf, ARegionTouchesWhatItsBorderLiesIn) {
     expect_chosen({0, 0, 63.999, 63.999}, {{0, 0}});
     expect_chosen({0, 0, 64, 63}, {{0, 0}, {1, 0}});
     expect_chosen({-0.001, 0, 1, 1}, {{-1, 0}, {0, 0}});
-    EXPECT_EQ(sectors_of(Region{-1e300, -1e300, 1e300, 1e300}, ground())->size(), 25u);
+    EXPECT_EQ(sectors_of(JobRegion{-1e300, -1e300, 1e300, 1e300}, ground())->size(), 25u);
 }
 
 TEST(SectorsOf, WrongRegionsAreRefused) {
@@ -82,29 +82,6 @@ TEST(SectorsOf, TilesOfEightComeAfterEachOther) {
         EXPECT_EQ((*chosen)[n].j >> 3, first.j >> 3) << n;
     }
     EXPECT_EQ(chosen->front(), (map::SectorCoordinate{-8, -8}));
-}
-
-TEST(SettingsOf, OverridesChangeAPreset) {
-    const auto settings = settings_of({{}, "draft", {{"rays", "64"}, {"reach", "100"}}, {}, ""});
-    ASSERT_TRUE(settings) << settings.error().message;
-    EXPECT_EQ(settings->rays, 64u);
-    EXPECT_EQ(settings->reach_m, 100);
-    EXPECT_EQ(settings->bounces, bake::preset("draft")->bounces);
-}
-
-TEST(SettingsOf, WrongOnesAreInvalidArguments) {
-    const auto refused = [](const std::string& preset, const std::map<std::string, std::string>& overrides) {
-        const auto settings = settings_of({{}, preset, overrides, {}, ""});
-        return !settings && settings.error().code == store::ErrorCode::invalid_argument &&
-               !settings.error().message.empty();
-    };
-    EXPECT_TRUE(refused("", {}));
-    EXPECT_TRUE(refused("best", {}));
-    for (const char* value : {"", "x", "0", "-1", "64x", "1e9", "99999999999999999999", " 64", "64.5"})
-        EXPECT_TRUE(refused("draft", {{"rays", value}})) << value;
-    for (const char* value : {"nan", "inf", "-1", "0", "1e30", ""})
-        EXPECT_TRUE(refused("draft", {{"reach", value}})) << value;
-    EXPECT_TRUE(refused("draft", {{"colour", "red"}}));
 }
 
 }  // namespace

@@ -32,7 +32,6 @@ TEST_F(JobTableTest, AReopenedFileHasAllOfIt) {
     EXPECT_EQ(std::tuple(back.row.request_id, back.row.manifest, back.row.inventory, back.row.preset),
               std::tuple(job.request_id, job.manifest, job.inventory, job.preset));
     EXPECT_EQ(back.row.settings, job.settings);  // floats to their last bit
-    EXPECT_EQ(back.row.overrides, job.overrides);
     ASSERT_TRUE(back.row.region);
     EXPECT_EQ(std::tuple(back.row.region->x0, back.row.region->y0, back.row.region->x1, back.row.region->y1),
               std::tuple(0, -1.5, 0.1, 1));
@@ -139,12 +138,10 @@ TEST_F(JobTableTest, ARequestIdNamesOneJob) {
 TEST_F(JobTableTest, ARowThatSomebodyElseChangedIsNotSound) {
     const JobRow job = add_job({{0, 0}, {1, 0}});
     write([&](Connection& connection) { EXPECT_TRUE(record_sector(connection, done(job.id, {0, 0}))); });
-    change("UPDATE job SET rays = 98");
+    change("UPDATE job SET setting_rays = 98");
     EXPECT_FALSE(this->job(job.id).sound);
-    change("UPDATE job SET rays = 99");
+    change("UPDATE job SET setting_rays = 99");
     EXPECT_TRUE(this->job(job.id).sound);
-    change("UPDATE job_override SET value = '98' WHERE key = 'rays'");
-    EXPECT_FALSE(this->job(job.id).sound);
     change("UPDATE job_sector SET file = replace(file, substr(file, 9, 1), 'x') WHERE i = 0");
     EXPECT_FALSE(sector(job.id, {0, 0}).sound);
     EXPECT_TRUE(sector(job.id, {1, 0}).sound);
@@ -152,8 +149,8 @@ TEST_F(JobTableTest, ARowThatSomebodyElseChangedIsNotSound) {
 
 TEST_F(JobTableTest, NegativeZeroIsKeptAsASoundZero) {
     JobRow job;
-    job.region = Region{-0.0, -0.0, 1, 1};
-    job.settings.error = -0.0f;
+    job.region = JobRegion{-0.0, -0.0, 1, 1};
+    job.settings.bake.error = -0.0f;
     write([&](Connection& connection) { insert_job(connection, job); });
     EXPECT_TRUE(this->job(job.id).sound);
 }
@@ -171,7 +168,6 @@ TEST_F(JobTableTest, WhatWasNotWrittenWholeIsGoneAtTheNextStart) {
     const JobRow whole = add_job({{0, 0}});
     write([&](Connection& connection) {
         JobRow job;
-        job.overrides = {{"rays", "99"}};
         insert_job(connection, job);
         insert_sectors(connection, std::vector{sector_row(job.id, {1, 1})});
     });

@@ -138,7 +138,8 @@ TEST_F(RecorderTest, AFileThatLeftTheStoreBeforeItWasRecordedIsBakedAgain) {
 TEST_F(RecorderTest, AFailureIsTheSectors) {
     const JobRow job = add({{0, 0}});
     const SectorTask task = book.next().value();
-    recorder->record(book.finish(task.id, 3, tl::unexpected(worker::Failure{"it burnt", false})).value());
+    recorder->record(
+        book.finish(task.id, 3, tl::unexpected(worker::RequestFailure{"it burnt", false})).value());
     EXPECT_EQ(wait(job.id, has_ended).row.error, "1 of 1 sectors failed; sector (0, 0): it burnt");
     EXPECT_EQ(sector(job.id, {0, 0}).row.failed_attempts, 3);
     EXPECT_EQ(cache.counts()->results, 0);
@@ -162,7 +163,7 @@ TEST_F(RecorderTest, ARestartBakesSectorsOfDamagedRowsAgain) {
 
 TEST_F(RecorderTest, AJobWhoseRowIsDamagedMeanwhileFailsAndDoesNotHang) {
     const JobRow job = add({{0, 0}, {1, 0}});
-    change("UPDATE job SET bounces = 1");
+    change("UPDATE job SET setting_bounces = 1");
     recorder->record(bake_next());
     EXPECT_NE(wait(job.id, has_ended).row.error.find("damaged"), std::string::npos);
     EXPECT_FALSE(book.next());
@@ -198,7 +199,7 @@ TEST_F(RecorderTest, ARestartFailsAJobOfWhichASectorIsMissing) {
 
 TEST_F(RecorderTest, ARestartFailsAJobWhoseSettingsAreDamaged) {
     const JobRow job = add({{0, 0}});
-    change("UPDATE job SET bounces = 1");
+    change("UPDATE job SET setting_bounces = 1");
     JobBook after;
     ASSERT_TRUE(load_jobs(*database, after));
     EXPECT_EQ(after.view(job.id)->row.state, JobState::failed);

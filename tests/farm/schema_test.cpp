@@ -65,7 +65,6 @@ TEST_P(FirstSchemas, OpenWithAllTheirRows) {
         EXPECT_EQ(std::tuple(job.id, job.request_id, job.manifest),
                   std::tuple(5, "request", digest_of("map")));
         EXPECT_EQ(job.preset, "draft");
-        EXPECT_EQ(job.overrides, (std::map<std::string, std::string>{{"rays", "99"}}));
         ASSERT_TRUE(job.region);
         EXPECT_EQ(std::tuple(job.region->x0, job.region->y1), std::tuple(0, 1));
         EXPECT_EQ(job.state, JobState::running);
@@ -73,11 +72,11 @@ TEST_P(FirstSchemas, OpenWithAllTheirRows) {
                   std::tuple(2, 1, 0, 10));
         EXPECT_EQ(std::tuple(job.sectors_cached, job.created_ms, job.ended_ms), std::tuple(4, 1000000, 0));
         // What still waits is baked under the key of its settings: they must be those that it was asked with.
-        bake::Settings asked;
-        asked.rays = 99;
-        asked.bounces = 2;
-        asked.reach_m = 64;
-        asked.min_distance_m = 7;
+        settings::JobSettings asked;
+        asked.bake.rays = 99;
+        asked.bake.bounces = 2;
+        asked.bake.reach_m = 64;
+        asked.bake.min_distance_m = 7;
         asked.tolerance = 0;  // there was none
         EXPECT_EQ(job.settings, asked);
 
@@ -147,7 +146,7 @@ TEST_F(LastSchemas, KeepResultsForTheirMapAndThoseThatReusedThem) {
         EXPECT_EQ(std::tuple(job->row.state, job->row.sectors_total, job->row.sectors_done),
                   std::tuple(JobState::succeeded, 4, 4));
         EXPECT_GT(job->row.ended_ms, 1700000000000);
-        EXPECT_EQ(job->row.settings.rays, id == 3 ? 65536u : 16u);
+        EXPECT_EQ(job->row.settings.bake.rays, id == 3 ? 65536u : 16u);
         const auto map =
             read(*database, [&](Connection& connection) { return find_map(connection, job->row.manifest); });
         ASSERT_TRUE(map);

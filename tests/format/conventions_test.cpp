@@ -82,7 +82,7 @@ TEST(SphericalHarmonics, ConstantsAreTheRootsRounded) {
     EXPECT_NEAR(sh_y1, std::sqrt(3 / (4 * std::numbers::pi)), constant_tolerance);
 }
 
-// The share of the open sky in a direction's colour: DESIGN section 2 calls it o.
+// The share of the open sky in a direction's colour: docs/design.md, section 2 calls it o.
 TEST(SphericalHarmonics, OpenSkyShareOfUpwardBasisIsAsWritten) {
     const double lobe = integrate_sphere(
         [](const Float3& w) { return w[2] > 0 ? std::max(0.0, dot(w, transfer_basis[0])) : 0.0; });

@@ -36,7 +36,7 @@ Image paint(std::size_t width, std::size_t height, const Colour& colour) {
 
 // The size of the PNG.
 std::size_t expect_read_back(const Image& image) {
-    const std::vector<std::uint8_t> png = encode_png(image);
+    const std::vector<std::uint8_t> png = encode_png(image).value();
     int width = 0, height = 0, channels = 0;
     stbi_uc* pixels =
         stbi_load_from_memory(png.data(), static_cast<int>(png.size()), &width, &height, &channels, 0);
@@ -71,39 +71,36 @@ TEST(PngWriter, SmoothPictureIsReadBackAndSmall) {
 TEST(PngTexts, AreReadBackAndShowNothing) {
     const Image image =
         paint(9, 4, [](auto x, auto y, auto c) { return static_cast<std::uint8_t>(x * y + c); });
-    const std::vector<std::uint8_t> png = encode_png(image, {{"one", "1,2.5"}, {"two", ""}});
+    const std::vector<std::uint8_t> png = encode_png(image, {{"one", "1,2.5"}, {"two", ""}}).value();
     EXPECT_EQ(png_text(png, "one"), "1,2.5");
     EXPECT_EQ(png_text(png, "two"), "");
     EXPECT_FALSE(png_text(png, "three"));
     EXPECT_FALSE(png_text(png, "on"));
-    EXPECT_FALSE(png_text(encode_png(image), "one"));
-    std::string why;
-    const auto decoded = decode_png(png, why);
-    ASSERT_TRUE(decoded) << why;
+    EXPECT_FALSE(png_text(encode_png(image).value(), "one"));
+    const auto decoded = decode_png(png);
+    ASSERT_TRUE(decoded) << decoded.error().sentence;
     EXPECT_EQ(decoded->rgb, image.rgb);
 }
 
 TEST(PngDecoder, AnyPrefixAndAnyChangedByteIsDefined) {
     const Image image =
         paint(7, 5, [](auto x, auto y, auto c) { return static_cast<std::uint8_t>(31 * x + y + 7 * c); });
-    const std::vector<std::uint8_t> png = encode_png(image, {{"key", "text"}});
-    std::string why;
+    const std::vector<std::uint8_t> png = encode_png(image, {{"key", "text"}}).value();
     for (std::size_t size = 0; size < png.size(); ++size) {
         const std::span<const std::uint8_t> part(png.data(), size);
-        why.clear();
-        const bool is_read = decode_png(part, why).has_value();
-        EXPECT_TRUE(is_read || !why.empty());
+        const auto read = decode_png(part);
+        EXPECT_TRUE(read || !read.error().sentence.empty());
         (void)png_text(part, "key");
     }
     for (std::size_t at = 0; at < png.size(); ++at) {
         std::vector<std::uint8_t> changed = png;
         for (const int value : {0, 1, 127, 255}) {
             changed[at] = static_cast<std::uint8_t>(value);
-            (void)decode_png(changed, why);
+            (void)decode_png(changed);
             (void)png_text(changed, "key");
         }
     }
-    EXPECT_FALSE(decode_png({}, why));
+    EXPECT_FALSE(decode_png({}));
 }
 
 }  // namespace

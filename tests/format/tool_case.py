@@ -8,6 +8,9 @@ import unittest
 
 import sector_file
 
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+import json_lines
+
 DRTV, GOLDEN_FOLDER = sys.argv[1:3]
 GOLDEN = os.path.join(GOLDEN_FOLDER, "format_1_0.drtv")
 GOLDEN_1_1 = os.path.join(GOLDEN_FOLDER, "format_1_1.drtv")
@@ -62,6 +65,9 @@ class Tool(unittest.TestCase):
         """Runs and checks: the exit code, words on stderr (none: it is empty), words on stdout when asked."""
         result = drtv(*arguments, **options)
         stdout, stderr = result.stdout.decode(), result.stderr.decode()
+        if "--json" in arguments:
+            json_lines.check("drtv", arguments[0], stdout)
+            stderr = json_lines.messages_as_text(stderr)
         self.assertEqual(result.returncode, exit_code, (arguments, stdout[-500:], stderr))
         if err:
             self.assertIn(err, stderr)

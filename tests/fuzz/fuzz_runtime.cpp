@@ -138,11 +138,11 @@ void open_any_tiles(std::vector<std::uint8_t> bytes, Numbers numbers) {
 }
 
 void read_any_day(std::string_view text, Numbers numbers) {
-    DayFile file;
-    if (!DayFile::read(text, file).empty())
+    const auto file = DayFile::read(text);
+    if (!file)
         return;
-    std::vector<GroupColour> groups(file.day().groups.size());
-    const SceneLight light = light_of_day(file.day(), double{numbers.next()}, RelightMode::accurate, groups);
+    std::vector<GroupColour> groups(file->day().groups.size());
+    const SceneLight light = light_of_day(file->day(), double{numbers.next()}, RelightMode::accurate, groups);
     check(clamped(open_sky(light)));
     require(std::isfinite(light.sun.direction[2]));
 }

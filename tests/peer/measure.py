@@ -11,7 +11,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "e2e"))
 from farm_fixture import Farm  # noqa: E402
 
-# DESIGN 1 and 2, format/SPEC.md.
+# docs/design.md, section 1 and section 2; format/SPEC.md.
 BASIS = [
     (-0.408248, -0.707107, 0.577350),
     (-0.408248, 0.707107, 0.577350),

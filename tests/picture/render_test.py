@@ -12,7 +12,9 @@ import tempfile
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "format"))
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
+import json_lines
 import png_file
 
 BAKERD, DRTV, WRITE_YARD = sys.argv[1:4]
@@ -80,7 +82,9 @@ class Pictures(Render):
         picks = [word for x, y in pixels for word in ("--pick", f"{x},{y}")]
         light = ("--time", "14:00", "--light", "30,26,2.5,40,30,20", "--group", "lanterns=1,1,1")
         picture = self.drawn(*SOUTH, *SMALL, *light, "--show", "ambient", "--exposure", str(exposure), *picks)
-        surfaces = [json.loads(line) for line in self.told.splitlines() if line.startswith("{")]
+        objects = [line for line in self.told.splitlines() if line.startswith("{")]
+        json_lines.check("bakerd", "render", "\n".join(objects))
+        surfaces = [json.loads(line) for line in objects]
         surfaces = [surface for surface in surfaces if "at" in surface]
         points = "".join(json.dumps({"at": s["at"], "normal": s["normal"]}) + "\n" for s in surfaces)
         relit = program(
@@ -153,6 +157,7 @@ class Pictures(Render):
     def test_picks_of_several_hours(self):
         run = self.render(*SOUTH, *SMALL, "--times", "06:30,12:00", "--pick", "80,80", "--pick", "3,3")
         self.assertEqual((run.returncode, run.stderr), (0, ""))
+        json_lines.check("bakerd", "render", run.stdout)
         lines = [json.loads(line) for line in run.stdout.splitlines()]
         self.assertEqual([(line["time"], line["pixel"]) for line in lines],
                          [(time, pixel) for time in ("06:30", "12:00") for pixel in ([80, 80], [3, 3])])  # fmt: skip

@@ -59,26 +59,26 @@ std::vector<placement::Side> AnalyticScene::sides(const glm::vec3& from, const g
     return sides;
 }
 
-placement::Surroundings AnalyticScene::surroundings() const {
-    placement::Surroundings surroundings;
-    surroundings.column = [this](glm::vec2 at, std::vector<ColumnHit>& hits) { column(at, hits); };
-    surroundings.column_of_spaces = surroundings.column;
-    surroundings.closed_around = [this](const glm::vec3& point) {
+placement::SceneQueries AnalyticScene::queries() const {
+    placement::SceneQueries queries;
+    queries.column = [this](glm::vec2 at, std::vector<ColumnHit>& hits) { column(at, hits); };
+    queries.column_of_spaces = queries.column;
+    queries.closed_around = [this](const glm::vec3& point) {
         return is_in_box(point) ? std::optional<placement::Thing>(0) : std::nullopt;
     };
-    surroundings.first_met = [](const glm::vec3&, std::span<const placement::Look> looks, std::size_t most) {
+    queries.first_met = [](const glm::vec3&, std::span<const placement::Look> looks, std::size_t most) {
         return placement::Met{0, std::min(looks.size(), most), std::nullopt};
     };
-    surroundings.wall_within = [](const glm::vec3&, float) { return std::optional<placement::Thing>(); };
-    surroundings.sides = [this](const glm::vec3& a, const glm::vec3& b) { return sides(a, b); };
-    surroundings.separated = [this](const glm::vec3& a, const glm::vec3& b) { return !sees(a, b); };
-    surroundings.hidden = surroundings.separated;
-    return surroundings;
+    queries.wall_within = [](const glm::vec3&, float) { return std::optional<placement::Thing>(); };
+    queries.sides = [this](const glm::vec3& a, const glm::vec3& b) { return sides(a, b); };
+    queries.separated = [this](const glm::vec3& a, const glm::vec3& b) { return !sees(a, b); };
+    queries.hidden = queries.separated;
+    return queries;
 }
 
 placement::Placement AnalyticScene::place(std::int32_t i, std::int32_t j, float min_distance_m) const {
-    auto placed = placement::place_probes({i, j, vegetation, manual, no_probes, spacings}, surroundings(),
-                                          {min_distance_m});
+    auto placed =
+        placement::place_probes({i, j, vegetation, manual, no_probes, spacings}, queries(), {min_distance_m});
     EXPECT_TRUE(placed.has_value()) << placed.error();
     return placed.value_or(placement::Placement{});
 }
@@ -89,8 +89,8 @@ AnalyticScene flat_ground(float z_m) {
     return scene;
 }
 
-std::vector<placement::ManualProbe> manual_at(const std::vector<glm::dvec3>& places) {
-    std::vector<placement::ManualProbe> probes;
+std::vector<placement::HandPlacedProbe> manual_at(const std::vector<glm::dvec3>& places) {
+    std::vector<placement::HandPlacedProbe> probes;
     for (const glm::dvec3& place : places)
         probes.push_back({place, {}});
     return probes;
@@ -127,7 +127,7 @@ std::int64_t squared_units(double distance_m) {
     return std::llround(distance_m * 1024) * std::llround(distance_m * 1024);
 }
 
-std::int64_t least_squared_distance(std::span<const PlacedProbe> probes) {
+std::int64_t min_squared_distance(std::span<const PlacedProbe> probes) {
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (std::size_t a = 0; a < probes.size(); ++a) {
         for (std::size_t b = 0; b < a; ++b) {

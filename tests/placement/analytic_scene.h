@@ -24,11 +24,11 @@ struct AnalyticScene {
     std::vector<Box> boxes;   // closed solids, met by columns and rays
     std::vector<Box> solids;  // met by rays only: what a column cannot know about
     std::vector<Box> vegetation;
-    std::vector<placement::ManualProbe> manual;
+    std::vector<placement::HandPlacedProbe> manual;
     std::vector<placement::ClosedVolume> no_probes;
     std::vector<placement::SpacingVolume> spacings;
 
-    [[nodiscard]] placement::Surroundings surroundings() const;
+    [[nodiscard]] placement::SceneQueries queries() const;
     // REQUIRES: placement succeeds.
     [[nodiscard]] placement::Placement place(std::int32_t i, std::int32_t j, float min_distance_m = 6) const;
 
@@ -44,14 +44,14 @@ struct AnalyticScene {
 // Ground whose front is up.
 [[nodiscard]] AnalyticScene flat_ground(float z_m = 0);
 
-[[nodiscard]] std::vector<placement::ManualProbe> manual_at(const std::vector<glm::dvec3>& places);
+[[nodiscard]] std::vector<placement::HandPlacedProbe> manual_at(const std::vector<glm::dvec3>& places);
 [[nodiscard]] placement::ClosedVolume box_volume(const glm::dvec3& low, const glm::dvec3& high);
 
 [[nodiscard]] std::int64_t squared_distance(const Position& a, const Position& b);
 [[nodiscard]] std::int64_t squared_units(double distance_m);
 // Over all pairs of automatic probes, and of an automatic and a manual one; the largest number when there is
 // none.
-[[nodiscard]] std::int64_t least_squared_distance(std::span<const PlacedProbe> probes);
+[[nodiscard]] std::int64_t min_squared_distance(std::span<const PlacedProbe> probes);
 [[nodiscard]] std::size_t count_of(const placement::Placement& placement, Kind kind);
 
 // Comparable content.

@@ -35,7 +35,7 @@ class GlobalDecision {
   public:
     GlobalDecision(const AnalyticScene& scene, glm::ivec2 low_m, glm::ivec2 high_m, double distance_m)
         : scene_(scene), reach_units_(distance_m * 1024), least_(squared_units(distance_m)) {
-        for (const placement::ManualProbe& probe : scene.manual) {
+        for (const placement::HandPlacedProbe& probe : scene.manual) {
             const glm::dvec3& m = probe.position;
             manual_.emplace_back(std::lround(m.x * 1024), std::lround(m.y * 1024), std::lround(m.z * 1024));
         }
@@ -246,10 +246,10 @@ AnalyticScene random_scene(unsigned seed, float holes) {
     const auto between = [&](float a, float b) {
         return a + (b - a) * static_cast<float>(random() % 65536u) / 65536.0f;
     };
-    const auto box = [&](float most_m, float low_z, float high_z) {
-        const glm::vec3 low(between(low_m, high_m - most_m), between(low_m, high_m - most_m),
+    const auto box = [&](float max_m, float low_z, float high_z) {
+        const glm::vec3 low(between(low_m, high_m - max_m), between(low_m, high_m - max_m),
                             between(low_z, high_z));
-        return Box{low, low + glm::vec3(between(0.5f, most_m), between(0.5f, most_m), between(0.5f, 6))};
+        return Box{low, low + glm::vec3(between(0.5f, max_m), between(0.5f, max_m), between(0.5f, 6))};
     };
     for (int n = 0; n < 200; ++n)
         scene.solids.push_back(box(8, -12, 10));

@@ -21,16 +21,16 @@ std::vector<placement::GridProbe> grid_probes(const std::vector<Position>& posit
 }
 
 // Empty space but for what hides.
-placement::Surroundings space(const Sees& sees) {
-    placement::Surroundings surroundings;
-    surroundings.column_of_spaces = [](glm::vec2, std::vector<ColumnHit>& hits) { hits.clear(); };
-    surroundings.closed_around = [](const glm::vec3&) { return std::optional<placement::Thing>(); };
-    surroundings.first_met = [](const glm::vec3&, std::span<const placement::Look>, std::size_t) {
+placement::SceneQueries space(const Sees& sees) {
+    placement::SceneQueries queries;
+    queries.column_of_spaces = [](glm::vec2, std::vector<ColumnHit>& hits) { hits.clear(); };
+    queries.closed_around = [](const glm::vec3&) { return std::optional<placement::Thing>(); };
+    queries.first_met = [](const glm::vec3&, std::span<const placement::Look>, std::size_t) {
         return placement::Met{0, 1, std::nullopt};
     };
-    surroundings.hidden = [sees](const glm::vec3& a, const glm::vec3& b) { return !sees(a, b); };
-    surroundings.separated = surroundings.hidden;
-    return surroundings;
+    queries.hidden = [sees](const glm::vec3& a, const glm::vec3& b) { return !sees(a, b); };
+    queries.separated = queries.hidden;
+    return queries;
 }
 
 ProbeGrid build(std::int32_t i, std::int32_t j, const std::vector<Position>& probes, const Sees& sees) {
@@ -156,26 +156,26 @@ TEST(ProbeGrid, CellsThatSeeNoneAreCounted) {
 
 TEST(ProbeGrid, ACellThatSeesNoneTakesOneOfItsOwnSpace) {
     // Leaves everywhere hide all; the wall separates.
-    placement::Surroundings surroundings = space(nothing);
-    surroundings.separated = [](const glm::vec3& a, const glm::vec3& b) { return !past_a_wall(a, b); };
-    const ProbeGrid grid = placement::build_grid(
-        0, 0, grid_probes({{22 * 1024, 2048, 1024}, {2048, 60 * 1024, 1024}}), surroundings);
+    placement::SceneQueries queries = space(nothing);
+    queries.separated = [](const glm::vec3& a, const glm::vec3& b) { return !past_a_wall(a, b); };
+    const ProbeGrid grid =
+        placement::build_grid(0, 0, grid_probes({{22 * 1024, 2048, 1024}, {2048, 60 * 1024, 1024}}), queries);
     EXPECT_EQ(grid.cells[cell_at(grid, {18, 2, 1})], 1);
     EXPECT_EQ(grid.blind_cells, 4096u);
 }
 
 // Ground at z = 3.8, its front up, west of a cliff at x = 32; east of it is nothing. A wall at x = 4.
-placement::Surroundings ground_and_wall() {
+placement::SceneQueries ground_and_wall() {
     const auto over_ground = [](const glm::vec3& p) { return p.x >= 32 || p.z >= 3.8f; };
-    placement::Surroundings surroundings = space([over_ground](const glm::vec3& a, const glm::vec3& b) {
+    placement::SceneQueries queries = space([over_ground](const glm::vec3& a, const glm::vec3& b) {
         return over_ground(a) == over_ground(b) && (a.x < 4) == (b.x < 4);
     });
-    surroundings.column_of_spaces = [](glm::vec2 at, std::vector<ColumnHit>& hits) {
+    queries.column_of_spaces = [](glm::vec2 at, std::vector<ColumnHit>& hits) {
         hits.clear();
         if (at.x < 32)
             hits.push_back({3.8f, true, false, true, false});
     };
-    return surroundings;
+    return queries;
 }
 
 TEST(ProbeGrid, APointInTheGroundIsRaisedToItsSurface) {

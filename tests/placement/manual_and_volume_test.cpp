@@ -18,7 +18,7 @@ TEST(ManualProbe, StaysExactlyWhereItIsAndWins) {
         manual_at({{35.25, 35.5, 4}, {35.25, 35.5, 4.125}, {5 + 1.0 / 1024, 6, 1}, {63.9990234375, 0, 1}});
     const placement::Placement placed = scene.place(0, 0);
     ASSERT_EQ(placed.probes.size(), 4u);
-    for (const placement::ManualProbe& m : scene.manual) {
+    for (const placement::HandPlacedProbe& m : scene.manual) {
         EXPECT_TRUE(std::any_of(placed.probes.begin(), placed.probes.end(), [&](const PlacedProbe& p) {
             return p.kind == Kind::manual && glm::dvec3(p.position) == m.position * 1024.0;
         }));
@@ -34,7 +34,7 @@ TEST(ManualProbe, KeepsAutomaticOnesAwayAcrossTheBorder) {
     EXPECT_EQ(right.probes[0].kind, Kind::manual) << "manual ones come first";
     std::vector<PlacedProbe> both = left.probes;
     both.insert(both.end(), right.probes.begin(), right.probes.end());
-    EXPECT_GE(least_squared_distance(both), squared_units(6));
+    EXPECT_GE(min_squared_distance(both), squared_units(6));
 }
 
 TEST(NoProbesVolume, RemovesWhatIsInsideAndCounts) {

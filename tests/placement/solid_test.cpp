@@ -51,10 +51,9 @@ TEST(SolidPlacement, ProbeDeepInASolidIsDroppedAndCounted) {
 }
 
 // What the looks of the one column's probe meet.
-placement::Surroundings meeting(const AnalyticScene& scene, const placement::Met& met) {
-    placement::Surroundings surroundings = scene.surroundings();
-    surroundings.first_met = [met](const glm::vec3& origin, std::span<const placement::Look> looks,
-                                   std::size_t) {
+placement::SceneQueries meeting(const AnalyticScene& scene, const placement::Met& met) {
+    placement::SceneQueries queries = scene.queries();
+    queries.first_met = [met](const glm::vec3& origin, std::span<const placement::Look> looks, std::size_t) {
         EXPECT_EQ(looks.size(), 49u);
         for (const placement::Look& look : looks) {
             EXPECT_NEAR(glm::dot(look.direction, look.direction), 1, 1e-6);
@@ -62,11 +61,11 @@ placement::Surroundings meeting(const AnalyticScene& scene, const placement::Met
         }
         return origin == placement::metres(start) ? met : placement::Met{0, 49, std::nullopt};
     };
-    return surroundings;
+    return queries;
 }
 
-placement::Placement place_one(const placement::Surroundings& surroundings) {
-    return placement::place_probes({0, 0, {}, {}, {}, {}}, surroundings, {}).value();
+placement::Placement place_one(const placement::SceneQueries& queries) {
+    return placement::place_probes({0, 0, {}, {}, {}, {}}, queries, {}).value();
 }
 
 TEST(SolidPlacement, FourInFiveBacksAndNoEscapeIsTheLimit) {
@@ -83,18 +82,18 @@ TEST(SolidPlacement, FourInFiveBacksAndNoEscapeIsTheLimit) {
 
 TEST(SolidPlacement, AProbeInAWallGoesToOneOfItsSides) {
     const AnalyticScene scene = one_column();
-    placement::Surroundings surroundings = scene.surroundings();
+    placement::SceneQueries queries = scene.queries();
     // A sheet in the plane x = 2.
-    surroundings.wall_within = [](const glm::vec3& point, float within_m) {
+    queries.wall_within = [](const glm::vec3& point, float within_m) {
         return std::abs(point.x - 2) < within_m ? std::optional<placement::Thing>(3) : std::nullopt;
     };
-    surroundings.sides = [](const glm::vec3& from, const glm::vec3& to) {
+    queries.sides = [](const glm::vec3& from, const glm::vec3& to) {
         std::vector<placement::Side> sides;
         if ((from.x - 2) * (to.x - 2) < 0)
             sides.push_back({0.02f, false, true});
         return sides;
     };
-    const placement::Placement placed = place_one(surroundings);
+    const placement::Placement placed = place_one(queries);
     ASSERT_EQ(placed.probes.size(), 1u);
     EXPECT_EQ(placed.report.moved_out, 1u);
     EXPECT_NE(placed.probes[0].position.x, start.x);
@@ -104,15 +103,15 @@ TEST(SolidPlacement, AProbeInAWallGoesToOneOfItsSides) {
 TEST(SolidPlacement, NoProbeIsPushedThroughAFront) {
     AnalyticScene scene = one_column();
     scene.solids = {{{0, -50, -50}, {4, 50, 50}}};
-    placement::Surroundings surroundings = scene.surroundings();
-    EXPECT_EQ(place_one(surroundings).report.moved_out, 1u);
-    surroundings.sides = [&](const glm::vec3& from, const glm::vec3& to) {
+    placement::SceneQueries queries = scene.queries();
+    EXPECT_EQ(place_one(queries).report.moved_out, 1u);
+    queries.sides = [&](const glm::vec3& from, const glm::vec3& to) {
         std::vector<placement::Side> sides = scene.sides(from, to);
         sides.push_back({0.5f, true, false});
         return sides;
     };
-    EXPECT_EQ(place_one(surroundings).report.dropped_in_solid, 1u);
-    EXPECT_EQ(place_one(surroundings).dropped_in, std::vector<placement::Thing>{0});
+    EXPECT_EQ(place_one(queries).report.dropped_in_solid, 1u);
+    EXPECT_EQ(place_one(queries).dropped_in, std::vector<placement::Thing>{0});
 }
 
 TEST(SolidPlacement, AHandPlacedProbeInASolidStaysAndIsNamed) {
@@ -132,7 +131,7 @@ TEST(SolidPlacement, BuriedProbeTakesNoPlaceFromAGoodOne) {
     for (const glm::vec2 at : {glm::vec2(10, 10), glm::vec2(18, 10), glm::vec2(10, 18), glm::vec2(18, 18)})
         scene.solids.push_back({{at - 1.2f, -30}, {at + 1.2f, 30}});
     const placement::Placement placed = scene.place(0, 0);
-    EXPECT_GE(least_squared_distance(placed.probes), squared_units(6));
+    EXPECT_GE(min_squared_distance(placed.probes), squared_units(6));
     EXPECT_TRUE(std::any_of(placed.probes.begin(), placed.probes.end(),
                             [](const PlacedProbe& p) { return p.position == Position(14, 14, 1) * 1024; }));
 }

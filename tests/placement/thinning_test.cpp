@@ -15,8 +15,8 @@ AnalyticScene tower(int floors) {
     return scene;
 }
 
-std::vector<placement::ManualProbe> manual_row(std::size_t count, double z_m) {
-    std::vector<placement::ManualProbe> probes;
+std::vector<placement::HandPlacedProbe> manual_row(std::size_t count, double z_m) {
+    std::vector<placement::HandPlacedProbe> probes;
     for (std::size_t n = 0; n < count; ++n)
         probes.push_back({{0.1 + 0.2 * static_cast<double>(n), 3, z_m}, {}});
     return probes;
@@ -40,7 +40,7 @@ TEST(Thinning, OneTooManyIsOneLessAndIsReported) {
     EXPECT_EQ(placed.probes.size(), max_probes);
     EXPECT_EQ(placed.report.thinned, 1u);
     EXPECT_EQ(placed.report.used_distance_m, 4);
-    EXPECT_GE(least_squared_distance(placed.probes), squared_units(placed.report.used_distance_m));
+    EXPECT_GE(min_squared_distance(placed.probes), squared_units(placed.report.used_distance_m));
 }
 
 TEST(Thinning, ManyFloorsFitAndNeighboursStayApart) {
@@ -49,10 +49,10 @@ TEST(Thinning, ManyFloorsFitAndNeighboursStayApart) {
     EXPECT_LE(left.probes.size(), max_probes);
     EXPECT_GE(left.probes.size(), 64u) << "thinned far more than needed";
     EXPECT_GT(left.report.thinned, 0u);
-    EXPECT_GE(least_squared_distance(left.probes), squared_units(left.report.used_distance_m));
+    EXPECT_GE(min_squared_distance(left.probes), squared_units(left.report.used_distance_m));
     std::vector<PlacedProbe> both = left.probes;
     both.insert(both.end(), right.probes.begin(), right.probes.end());
-    EXPECT_GE(least_squared_distance(both), squared_units(6));
+    EXPECT_GE(min_squared_distance(both), squared_units(6));
     EXPECT_EQ(keys(left.probes), keys(scene.place(0, 0).probes));
 }
 
@@ -79,12 +79,11 @@ TEST(Thinning, SectorFullOfManualProbesHasNoRoomForOthers) {
 TEST(Thinning, MoreManualProbesThanFitAreASentence) {
     AnalyticScene scene = flat_ground();
     scene.manual = manual_row(256, 1);
-    const auto placed = placement::place_probes({0, 0, {}, scene.manual, {}, {}}, scene.surroundings(), {});
+    const auto placed = placement::place_probes({0, 0, {}, scene.manual, {}, {}}, scene.queries(), {});
     ASSERT_FALSE(placed.has_value());
     EXPECT_NE(placed.error().find("sector (0, 0)"), std::string::npos) << placed.error();
     EXPECT_NE(placed.error().find("256"), std::string::npos) << placed.error();
-    EXPECT_TRUE(
-        placement::place_probes({1, 0, {}, scene.manual, {}, {}}, scene.surroundings(), {}).has_value())
+    EXPECT_TRUE(placement::place_probes({1, 0, {}, scene.manual, {}, {}}, scene.queries(), {}).has_value())
         << "the neighbour is fine";
 }
 

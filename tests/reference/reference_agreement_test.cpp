@@ -1,4 +1,4 @@
-// The product held against the reference: transfer agrees within 1 % of its mean (DESIGN section 2).
+// The product held against the reference: transfer agrees within 1 % of its mean (docs/design.md, section 2).
 #include "bakerd/bake/integrate.h"
 #include "bakerd/bake/sampling.h"
 #include "bakerd/bake/world.h"

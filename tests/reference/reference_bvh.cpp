@@ -116,7 +116,7 @@ void Bvh::split(std::span<const Box> boxes, std::vector<std::uint32_t>& order, s
     if (count <= small_leaf)
         return;
     std::uint32_t left = count / 2;
-    const Cut cut = depth < most_depth / 2 ? cheapest_cut(boxes, mine, centres) : Cut{};
+    const Cut cut = depth < max_depth / 2 ? cheapest_cut(boxes, mine, centres) : Cut{};
     if (cut.cost + step_cost * box.half_area() >= box.half_area() * static_cast<float>(count) &&
         count <= largest_leaf)
         return;

@@ -45,7 +45,7 @@ class Bvh {
     struct Ray {
         std::array<float, 3> origin, inverse;
     };
-    static constexpr std::size_t most_depth = 96;
+    static constexpr std::size_t max_depth = 96;
 
     void split(std::span<const Box> boxes, std::vector<std::uint32_t>& order, std::uint32_t node,
                std::size_t depth);
@@ -82,7 +82,7 @@ void Bvh::walk(const glm::dvec3& origin, const glm::dvec3& direction, const doub
         std::uint32_t node;
         float enter;
     };
-    std::array<Pending, most_depth + 4> stack;
+    std::array<Pending, max_depth + 4> stack;
     std::size_t depth = 0;
     stack[depth++] = {0, entry(nodes_[0].box, ray, bound())};
     while (depth > 0) {

@@ -1,6 +1,6 @@
-// Sky visibility, radiance transfer and static irradiance by brute force, written from DESIGN section 2
-// alone: uniform directions everywhere, double precision, no code of the product's integrator. Slow, and
-// right but for a known noise.
+// Sky visibility, radiance transfer and static irradiance by brute force, written from docs/design.md,
+// section 2 alone: uniform directions everywhere, double precision, no code of the product's integrator.
+// Slow, and right but for a known noise.
 #pragma once
 
 #include "tests/reference/reference_scene.h"
@@ -15,7 +15,7 @@ namespace drtv::reference {
 
 inline constexpr std::size_t basis_count = 4, sh_count = 4, channel_count = 3;
 
-// DESIGN section 1, with all digits.
+// docs/design.md, section 1, with all digits.
 inline const std::array<glm::dvec3, basis_count> basis = {
     {{-0.40824829046386302, -0.70710678118654752, 0.57735026918962576},
      {-0.40824829046386302, 0.70710678118654752, 0.57735026918962576},

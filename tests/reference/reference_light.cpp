@@ -11,8 +11,8 @@
 namespace drtv::reference {
 namespace {
 
-constexpr double least_distance_m = 0.01;
-constexpr double least_local_distance2_m2 = 0.25;
+constexpr double min_distance_m = 0.01;
+constexpr double min_local_distance2_m2 = 0.25;
 
 // "Range property" of the extension, without the division by the squared distance.
 double range_share(double distance_m, double range_m) {
@@ -46,7 +46,7 @@ std::optional<Incidence> incidence(const map::Light& light, const glm::dvec3& po
             return std::nullopt;
         result.towards = way / result.distance_m;
         result.irradiance *= range_share(result.distance_m, static_cast<double>(light.range_m)) /
-                             std::pow(std::max(result.distance_m, least_distance_m), 2);
+                             std::pow(std::max(result.distance_m, min_distance_m), 2);
         if (light.kind == map::LightKind::spot)
             result.irradiance *= cone_share(light, result.towards);
     }
@@ -61,7 +61,7 @@ std::optional<Incidence> local_incidence(const glm::dvec3& source, const glm::dv
     if (!(distance > 0))
         return std::nullopt;
     return Incidence{way / distance, distance,
-                     glm::dvec3(1 / std::max(distance * distance, least_local_distance2_m2))};
+                     glm::dvec3(1 / std::max(distance * distance, min_local_distance2_m2))};
 }
 
 }  // namespace drtv::reference

@@ -1,5 +1,5 @@
-// Local radiance transfer by brute force, from DESIGN section 2 alone: paths from the receiver, and at each
-// surface that they touch the light of every source.
+// Local radiance transfer by brute force, from docs/design.md, section 2 alone: paths from the receiver, and
+// at each surface that they touch the light of every source.
 #pragma once
 
 #include "tests/reference/reference_integrator.h"

@@ -115,8 +115,8 @@ struct Yard {
     }
 };
 
-bake::Settings settings_of_yard(std::uint32_t rays, bool local, std::uint32_t bounces = 3) {
-    bake::Settings settings;
+settings::BakeSettings settings_of_yard(std::uint32_t rays, bool local, std::uint32_t bounces = 3) {
+    settings::BakeSettings settings;
     settings.bounces = bounces;
     settings.rays = rays;
     settings.reach_m = 90;
@@ -175,7 +175,7 @@ struct Tally {
 };
 
 // Bakes both and holds every verdict against them.
-Tally check(const Yard& before, const Yard& after, const bake::Settings& settings, float tolerance,
+Tally check(const Yard& before, const Yard& after, const settings::BakeSettings& settings, float tolerance,
             const std::string& what) {
     const trace::FloatMode float_mode;
     const auto old_world = open_world(before.build()), new_world = open_world(after.build());
@@ -188,7 +188,7 @@ Tally check(const Yard& before, const Yard& after, const bake::Settings& setting
                                 is = reuse::bake_and_record(*new_world, {i, j}, settings).value();
             const auto footprint = reuse::decode_footprint(reuse::encode_footprint(was.footprint)).value();
             const reuse::Assessment assessment =
-                reuse::assess(footprint, settings, changes, tolerance, *new_world);
+                reuse::assess(footprint, {settings, tolerance}, changes, *new_world);
             const bool same = encoded(was.baked.sector) == encoded(is.baked.sector);
             tally.same += same ? 1 : 0;
             switch (assessment.verdict) {
@@ -262,7 +262,8 @@ class RandomEdits : public testing::TestWithParam<unsigned> {};
 TEST_P(RandomEdits, HoldWhatIsPromised) {
     std::mt19937 random(GetParam());
     Yard yard(GetParam(), GetParam() % 2 == 0, GetParam() % 4 >= 2);
-    const bake::Settings settings = settings_of_yard(64, GetParam() % 4 == 1, GetParam() % 3 == 0 ? 0 : 3);
+    const settings::BakeSettings settings =
+        settings_of_yard(64, GetParam() % 4 == 1, GetParam() % 3 == 0 ? 0 : 3);
     for (int n = 0; n < edits_or(4); ++n) {
         Yard edited = yard;
         const std::string what = "seed " + std::to_string(GetParam()) + ", edit " + std::to_string(n) + ": " +
@@ -282,8 +283,8 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
     const trace::FloatMode float_mode;
     std::mt19937 random(GetParam());
     Yard yard(GetParam(), GetParam() % 4 >= 2, tolerance == 0);
-    bake::Settings settings = settings_of_yard(tolerance == 0 ? 32 : 256, false, GetParam() % 3 == 0 ? 1 : 2);
-    settings.tolerance = tolerance;
+    const settings::BakeSettings settings =
+        settings_of_yard(tolerance == 0 ? 32 : 256, false, GetParam() % 3 == 0 ? 1 : 2);
     struct State {
         reuse::Rebake rebake;
         reuse::Inventory inventory;  // of its map
@@ -312,7 +313,7 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
                     state.rebake.baked.sector,
                     reuse::decode_footprint(reuse::encode_footprint(state.rebake.footprint)).value(),
                     {}};
-                earlier.assessment = reuse::assess(earlier.footprint, settings, changes, tolerance, *world);
+                earlier.assessment = reuse::assess(earlier.footprint, {settings, tolerance}, changes, *world);
                 if (earlier.assessment.verdict == reuse::Verdict::rebake) {
                     state = {reuse::bake_and_record(*world, {i, j}, settings, &earlier).value(), inventory};
                     taken_over += state.rebake.probes_reused;
@@ -320,7 +321,7 @@ TEST_P(ChainsOfEdits, TakeOverWhatHolds) {
                     ASSERT_LE(error_between(state.rebake.baked.sector, fresh.baked.sector), 1) << what;
                     for (std::size_t p = 0; p < fresh.baked.sector.probes.size(); ++p) {
                         const float bound =
-                            state.rebake.footprint.probes[p].share * state.rebake.footprint.gain();
+                            state.rebake.footprint.probes[p].changed_weight * state.rebake.footprint.gain();
                         off += bound > 0 ? 1 : 0;
                         EXPECT_LE(error_of_probe(state.rebake.baked.sector, fresh.baked.sector, p),
                                   bound + (bound > 0 ? 0x1p-13f : 0))
@@ -352,11 +353,11 @@ INSTANTIATE_TEST_SUITE_P(Seeds, ChainsOfEdits, testing::Range(1u, 11u));
 TEST(EarlierBake, RaysOfSolidTestsAreUsedUp) {
     const trace::FloatMode float_mode;
     const Yard yard(3, false);
-    const bake::Settings settings = settings_of_yard(32, false);
+    const settings::BakeSettings settings = settings_of_yard(32, false);
     const auto world = open_world(yard.build());
     const reuse::Rebake was = reuse::bake_and_record(*world, {0, 0}, settings).value();
     reuse::EarlierBake earlier{was.baked.sector, was.footprint,
-                               reuse::assess(was.footprint, settings, {}, 0, *world)};
+                               reuse::assess(was.footprint, {settings, 0}, {}, *world)};
     ASSERT_EQ(earlier.assessment.flips.size(), was.footprint.solid_tests.size());
     const auto test = static_cast<std::size_t>(
         std::ranges::max_element(was.footprint.solid_tests, {}, &placement::SolidTest::to_flip) -
@@ -377,25 +378,24 @@ TEST(EarlierBake, RaysOfSolidTestsAreUsedUp) {
 TEST(EarlierBake, TheGainIsOfTheBrighterMap) {
     const trace::FloatMode float_mode;
     const Yard yard(3, true);
-    bake::Settings settings = settings_of_yard(32, false);
-    settings.tolerance = 1 / 512.0f;
+    const settings::BakeSettings settings = settings_of_yard(32, false);
     const auto world = open_world(yard.build());
     const reuse::Rebake was = reuse::bake_and_record(*world, {0, 0}, settings).value();
     ASSERT_GT(was.footprint.static_gain, 0);
     reuse::EarlierBake earlier{was.baked.sector, was.footprint,
-                               reuse::assess(was.footprint, settings, {}, settings.tolerance, *world)};
+                               reuse::assess(was.footprint, {settings, 1 / 512.0f}, {}, *world)};
     earlier.assessment.static_gain = 0;
     const auto footprint = [&] {
         return reuse::bake_and_record(*world, {0, 0}, settings, &earlier).value().footprint;
     };
-    earlier.footprint.most_scattered = 2 * was.footprint.most_scattered;
+    earlier.footprint.max_scattered = 2 * was.footprint.max_scattered;
     // As it was, exactly: nothing is left of the map before.
     EXPECT_EQ(footprint().static_gain, was.footprint.static_gain);
-    EXPECT_EQ(footprint().most_scattered, was.footprint.most_scattered);
+    EXPECT_EQ(footprint().max_scattered, was.footprint.max_scattered);
     earlier.assessment.probe_bounds[0] = 0.001f;
     EXPECT_GE(footprint().static_gain, 2 * was.footprint.static_gain);
     EXPECT_LE(footprint().static_gain, 16 * was.footprint.static_gain);
-    EXPECT_EQ(footprint().most_scattered, 2 * was.footprint.most_scattered);
+    EXPECT_EQ(footprint().max_scattered, 2 * was.footprint.max_scattered);
     earlier.assessment.static_gain = 100 * was.footprint.static_gain;
     EXPECT_EQ(footprint().static_gain, 100 * was.footprint.static_gain);
 }
@@ -406,18 +406,18 @@ TEST(EarlierBake, OfOtherHeightsOrOfAnotherFileIsNotUsed) {
     const Yard yard(3, false);
     Yard tower = yard;
     tower.things.push_back({"tower", "", 1, {100, 60, -100}});
-    const bake::Settings settings = settings_of_yard(32, false);
+    const settings::BakeSettings settings = settings_of_yard(32, false);
     const auto before = open_world(yard.build()), after = open_world(tower.build());
     const reuse::Rebake was = reuse::bake_and_record(*before, {0, 0}, settings).value(),
                         is = reuse::bake_and_record(*after, {0, 0}, settings).value();
     const auto changes =
         reuse::changes_between(reuse::take_inventory(*before), reuse::take_inventory(*after));
     reuse::EarlierBake earlier{was.baked.sector, was.footprint,
-                               reuse::assess(was.footprint, settings, changes, 0, *after)};
+                               reuse::assess(was.footprint, {settings, 0}, changes, *after)};
     const reuse::Rebake higher = reuse::bake_and_record(*after, {0, 0}, settings, &earlier).value();
     EXPECT_EQ(higher.probes_reused, 0u);
     EXPECT_EQ(encoded(higher.baked.sector), encoded(is.baked.sector));
-    earlier = {is.baked.sector, is.footprint, reuse::assess(is.footprint, settings, {}, 0, *after)};
+    earlier = {is.baked.sector, is.footprint, reuse::assess(is.footprint, {settings, 0}, {}, *after)};
     EXPECT_EQ(reuse::bake_and_record(*after, {0, 0}, settings, &earlier).value().probes_reused,
               is.baked.sector.probes.size());
     earlier.sector.probes.pop_back();
@@ -468,14 +468,14 @@ TEST(Assessment, PlacementLooksWhereNoRayGoes) {
         return open_world(b);
     };
     const trace::FloatMode float_mode;
-    const bake::Settings settings = settings_of_yard(64, false);
+    const settings::BakeSettings settings = settings_of_yard(64, false);
     const auto before = cellar(false), after = cellar(true);
     const auto changes =
         reuse::changes_between(reuse::take_inventory(*before), reuse::take_inventory(*after));
     const reuse::Rebake was = reuse::bake_and_record(*before, {0, 0}, settings).value(),
                         is = reuse::bake_and_record(*after, {0, 0}, settings).value();
     ASSERT_GT(is.baked.sector.probes.size(), was.baked.sector.probes.size());
-    const reuse::Assessment assessment = reuse::assess(was.footprint, settings, changes, 1 / 32.0f, *after);
+    const reuse::Assessment assessment = reuse::assess(was.footprint, {settings, 1 / 32.0f}, changes, *after);
     EXPECT_EQ(assessment.verdict, reuse::Verdict::rebake);
     EXPECT_EQ(reuse::describe(assessment, changes), "floor was added: it may move probes");
 }
@@ -495,7 +495,7 @@ TEST(Assessment, ToleranceLetsAFarTreeBe) {
     const Yard yard(3, false);
     Yard moved = yard;
     moved.things.back().at = {-62, 0, 62};
-    bake::Settings settings = settings_of_yard(1024, false);
+    settings::BakeSettings settings = settings_of_yard(1024, false);
     const Tally exact = check(yard, moved, settings, 0, "exact"),
                 near = check(yard, moved, settings, 1 / 32.0f, "near");
     EXPECT_EQ(exact.near_hits, 0);
@@ -520,7 +520,7 @@ TEST(Rebake, ALightGroupThatAppearsIsThatOfAFullBake) {
     yard.lamp_groups = {"lanterns", "lanterns"};
     yard.lamp_candela = 1e-6;
     const trace::FloatMode float_mode;
-    const bake::Settings settings = settings_of_yard(64, false);
+    const settings::BakeSettings settings = settings_of_yard(64, false);
     const reuse::Rebake was = reuse::bake_and_record(*open_world(yard.build()), {0, 0}, settings).value();
     ASSERT_TRUE(was.baked.sector.light_groups.empty());
     yard.lamp_candela = 300;
@@ -559,13 +559,13 @@ TEST(Assessment, AnEmissiveEndCounts) {
     };
     const trace::FloatMode float_mode;
     const auto before = beam(0), after = beam(0.05);
-    const bake::Settings settings = settings_of_yard(32, false);
+    const settings::BakeSettings settings = settings_of_yard(32, false);
     const reuse::Footprint footprint = reuse::bake_and_record(*before, {0, 0}, settings).value().footprint;
     ASSERT_EQ(before->lights().emissive().size(), 1u);
     const bake::EmissiveObject& light = before->lights().emissive()[0];
     const auto changes =
         reuse::changes_between(reuse::take_inventory(*before), reuse::take_inventory(*after));
-    const reuse::Assessment assessment = reuse::assess(footprint, settings, changes, 0, *after);
+    const reuse::Assessment assessment = reuse::assess(footprint, {settings, 0}, changes, *after);
     int in_reach = 0;
     for (std::size_t p = 0; p < footprint.probes.size(); ++p) {
         if (glm::distance(placement::metres(footprint.probes[p].position), light.centre) - light.radius_m >

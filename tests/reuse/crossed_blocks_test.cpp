@@ -1,5 +1,7 @@
 #include "bakerd/reuse/crossed_blocks.h"
 
+#include "bakerd/bake/settings_key.h"
+
 #include <gtest/gtest.h>
 
 namespace drtv::test {
@@ -62,10 +64,10 @@ TEST(CrossedBlocks, AboveTheGridNothingIsKnown) {
 }
 
 TEST(ResultsKey, FollowsFromTheSettings) {
-    const bake::Settings base;
-    bake::Settings other = base;
+    const settings::BakeSettings base;
+    settings::BakeSettings other = base;
     other.rays = 17;
-    EXPECT_EQ(reuse::results_key(base), reuse::results_key(bake::Settings{}));
+    EXPECT_EQ(reuse::results_key(base), reuse::results_key(settings::BakeSettings{}));
     EXPECT_NE(reuse::results_key(base), reuse::results_key(other));
     EXPECT_NE(reuse::results_key(base), bake::settings_key(base));
 }

@@ -260,7 +260,7 @@ reuse::Footprint baked_footprint() {
     b.place(box({8, 0, -12}, {12, 6, -8}));
     b.add_node({.light = b.add_light({{"type", "point"}, {"intensity", 40}}),
                 .translation = glm::dvec3(20, 3, -20)});
-    bake::Settings settings;
+    settings::BakeSettings settings;
     settings.rays = 64;
     settings.reach_m = 60;
     return reuse::bake_and_record(*open_world(b), {0, 0}, settings).value().footprint;

@@ -16,7 +16,7 @@ struct LampsOverAPlane {
     std::shared_ptr<bake::World> world;
     std::shared_ptr<const trace::Scene> scene;
     std::vector<placement::Position> probes = {{0, 0, 1024}};
-    bake::Settings settings;
+    settings::BakeSettings settings;
 
     // Lamps of 683 cd (1 W/sr in the green that an eye sees best) so high above the plane.
     explicit LampsOverAPlane(const std::vector<glm::dvec3>& lamps) {
@@ -33,7 +33,7 @@ struct LampsOverAPlane {
     }
 
     [[nodiscard]] float gain() const {
-        return reuse::static_gain(world->lights(), world->most_scattered(), *scene, probes, settings);
+        return reuse::static_gain(world->lights(), world->max_scattered(), *scene, probes, settings);
     }
     // What the plane radiates so near to one of the lamps, as a share of the range.
     [[nodiscard]] float gain_at(float distance_m) const {
@@ -69,7 +69,7 @@ TEST(StaticGain, AllBouncesCount) {
 }
 
 TEST(StaticGain, GrowsWithTheSurfaces) {
-    bake::Settings settings;
+    settings::BakeSettings settings;
     settings.bounces = 2;
     EXPECT_EQ(reuse::raised_gain(3, 0.5f, 0.5f, settings), 3);
     EXPECT_EQ(reuse::raised_gain(3, 0.5f, 0.2f, settings), 3);
@@ -79,7 +79,7 @@ TEST(StaticGain, GrowsWithTheSurfaces) {
 TEST(StaticGain, OfBoxesIsByTheirDistance) {
     const LampsOverAPlane lamp({{5, 5, 4}});
     const auto of_box = [&](const map::Bounds& box) {
-        return reuse::static_gain(lamp.world->lights(), lamp.world->most_scattered(), std::vector{box},
+        return reuse::static_gain(lamp.world->lights(), lamp.world->max_scattered(), std::vector{box},
                                   lamp.settings);
     };
     EXPECT_FLOAT_EQ(of_box({{7, 4, 3}, {8, 6, 5}}), lamp.gain_at(2));

@@ -90,8 +90,7 @@ constexpr const char* good = R"({
     "groups": {"lanterns": [], "neon": [{"time": "20:00", "colour": [4, 0, 0]}]}})";
 
 TEST(DayFile, IsReadIntoADay) {
-    DayFile file;
-    ASSERT_EQ(DayFile::read(good, file), "");
+    DayFile file = DayFile::read(good).value();
     const Day& day = file.day();
     EXPECT_EQ(day.sun_path.latitude_deg, 30);
     ASSERT_EQ(day.sun.size(), 2u);
@@ -145,11 +144,10 @@ TEST(DayFile, SaysWhatIsWrongWhereAndWithWhichValue) {
         {replaced(R"("neon": [{"time": "20:00", "colour": [4, 0, 0]}])", R"("neon": [4])"),
          "groups.\"neon\"[0] is 4: it must be an object"}};
     for (const auto& [text, sentence] : cases) {
-        DayFile file;
-        const std::string error = DayFile::read(text, file);
-        EXPECT_EQ(error.substr(0, sentence.size()), sentence);
-        EXPECT_EQ(error.find('\n'), std::string::npos);
-        EXPECT_EQ(file.day().sun.size(), default_day().sun.size()) << "left as it was";
+        const auto file = DayFile::read(text);
+        ASSERT_FALSE(file) << text;
+        EXPECT_EQ(file.error().substr(0, sentence.size()), sentence);
+        EXPECT_EQ(file.error().find('\n'), std::string::npos);
     }
 }
 

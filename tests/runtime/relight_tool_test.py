@@ -12,6 +12,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(
 import relight_reference as reference
 import sector_file
 from tool_case import (
+    json_lines,
     GOLDEN,
     GOLDEN_1_1,
     GOLDEN_1_3,
@@ -422,6 +423,8 @@ class Usage(Tool):
             self.assertEqual(result.returncode, exit_code, result.stderr)
             self.assertEqual(result.stdout, b"")
             stderr = result.stderr.decode()
+            if "--json" in arguments:
+                stderr = json_lines.messages_as_text(stderr)
             self.assertRegex(stderr, r"\Adrtv: [^\n]+\n\Z")
             self.assertIn(words, stderr)
 
@@ -436,7 +439,7 @@ class Usage(Tool):
             ("--gradients goes with --time", *self.PLACE, "--gradients=day.json"),
             ("--sun requires --sun-direction", *self.PLACE, "--sun=1,1,1"),
             ("--sky excludes --sky-colours", *self.PLACE, "--sky=1,1,1", "--sky-colours=1,1,1,1,1,1,1,1,1"),
-            ("not expected: there", *self.PLACE, "there"),
+            ('"there" is one argument too many', *self.PLACE, "there"),
         ]:
             self.assert_refused(USAGE, words, self.world, *arguments)
         self.assert_refused(USAGE, "DIR is required", *self.PLACE)

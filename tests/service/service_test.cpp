@@ -111,7 +111,7 @@ class ServiceTest : public testing::Test {
         v1::CreateJobRequest request;
         request.mutable_job()->set_map(map);
         request.mutable_job()->mutable_settings()->set_preset(preset);
-        (*request.mutable_job()->mutable_settings()->mutable_overrides())["rays"] = "16";
+        request.mutable_job()->mutable_settings()->set_rays(16);
         request.set_request_id(request_id);
         grpc::ClientContext context;
         return jobs_->CreateJob(&context, request, &job);

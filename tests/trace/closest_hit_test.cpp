@@ -179,7 +179,7 @@ TEST(ClosestHit, EmptySceneIsSky) {
     EXPECT_EQ(scene->object_count(), 0u);
     EXPECT_FALSE(scene->closest({{0, 0, 4}, {0, 0, -1}, 1000}));
     EXPECT_FALSE(scene->occluded({{0, 0, 4}, {0, 0, -1}, 1000}));
-    std::vector<trace::ColumnHit> hits(3);
+    std::vector<placement::ColumnHit> hits(3);
     scene->column({0, 0}, hits);
     EXPECT_TRUE(hits.empty());
 }

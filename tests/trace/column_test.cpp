@@ -9,7 +9,7 @@
 namespace drtv::test {
 namespace {
 
-using trace::ColumnHit;
+using placement::ColumnHit;
 
 std::vector<ColumnHit> column(const trace::Scene& scene, glm::vec2 at) {
     std::vector<ColumnHit> hits(7);

@@ -164,7 +164,7 @@ TEST(InstanceBorders, AreMetByColumnsAndPointQueries) {
         SCOPED_TRACE(kit.name);
         const auto scene = laid(kit, false);
         int empty = 0, far = 0;
-        std::vector<trace::ColumnHit> hits;
+        std::vector<placement::ColumnHit> hits;
         for (int y = -rim(kit); y <= rim(kit); y += step) {
             for (int x = -rim(kit); x <= rim(kit); x += step) {
                 const glm::vec2 at(static_cast<float>(kit.east_m) + static_cast<float>(x),

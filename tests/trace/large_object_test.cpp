@@ -135,7 +135,7 @@ TEST(LargeObject, IsCrossedByColumnsAsTheSameThingInSmallPartsIs) {
         const Hills hills(random);
         const auto large = scene_of(hills.in_parts(cells, world_from_shape)),
                    small = scene_of(hills.in_parts(4, world_from_shape));
-        std::vector<trace::ColumnHit> a, b;
+        std::vector<placement::ColumnHit> a, b;
         int others = 0, compared = 0;
         for (int n = 0; n < 2000; ++n) {
             const glm::dvec3 at(world_from_shape *
@@ -165,7 +165,7 @@ TEST(LargeObject, IsCutToWhatLiesWithinReach) {
     for (const auto& [name, world_from_shape] : {placements()[0], placements()[2]}) {
         SCOPED_TRACE(name);
         const auto map = map_of(hills.in_parts(cells, world_from_shape));
-        const trace::Region region{glm::vec2(-15), glm::vec2(5)};
+        const trace::WorldRectangle region{glm::vec2(-15), glm::vec2(5)};
         const float reach_m = 22;  // up to -37 and 27: into the cells that end at -40 and 30
         const auto cut = scene_of(map, region, reach_m), whole = scene_of(map);
         ASSERT_EQ(cut->object_count(), 1u);

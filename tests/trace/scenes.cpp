@@ -52,8 +52,8 @@ std::shared_ptr<const map::Map> map_of(std::span<const Thing> things) {
     return std::make_shared<const map::Map>(std::move(*map));
 }
 
-std::shared_ptr<const trace::Scene> scene_of(std::shared_ptr<const map::Map> map, const trace::Region& region,
-                                             float reach_m) {
+std::shared_ptr<const trace::Scene> scene_of(std::shared_ptr<const map::Map> map,
+                                             const trace::WorldRectangle& region, float reach_m) {
     static const std::shared_ptr<trace::Device> device = trace::Device::open().value();
     trace::MapGeometry geometry(device, std::move(map));
     return trace::Scene::build(geometry, region, reach_m);

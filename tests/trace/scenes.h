@@ -29,11 +29,11 @@ struct Thing {
 
 [[nodiscard]] std::shared_ptr<const map::Map> map_of(std::span<const Thing> things);
 
-inline constexpr trace::Region everywhere{glm::vec2(-8192), glm::vec2(8192)};
+inline constexpr trace::WorldRectangle everywhere{glm::vec2(-8192), glm::vec2(8192)};
 
 // A scene that holds on to what it needs.
 [[nodiscard]] std::shared_ptr<const trace::Scene> scene_of(std::shared_ptr<const map::Map> map,
-                                                           const trace::Region& region = everywhere,
+                                                           const trace::WorldRectangle& region = everywhere,
                                                            float reach_m = 0);
 [[nodiscard]] inline std::shared_ptr<const trace::Scene> scene_of(std::span<const Thing> things) {
     return scene_of(map_of(things));

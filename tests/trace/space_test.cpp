@@ -166,10 +166,10 @@ TEST(Sides, TellFrontsBacksAndSheets) {
                                  thing_of(level_square(9, 15))};
     things[4].material.double_sided = true;
     auto sides = scene_of(things)->sides_met({{1.25f, 0.5f, 20}, {0, 0, -1}, 30});
-    std::ranges::sort(sides, {}, &trace::SideHit::distance_m);
+    std::ranges::sort(sides, {}, &placement::Side::distance_m);
     ASSERT_EQ(sides.size(), 6u) << "leaves are left out, a closed trunk is not";
-    const trace::SideHit expected[] = {{5, true, true},   {11, true, false},  {12, false, false},
-                                       {14, true, false}, {16, false, false}, {20, true, false}};
+    const placement::Side expected[] = {{5, true, true},   {11, true, false},  {12, false, false},
+                                        {14, true, false}, {16, false, false}, {20, true, false}};
     for (std::size_t n = 0; n < 6; ++n) {
         EXPECT_EQ(sides[n].distance_m, expected[n].distance_m);
         EXPECT_EQ(sides[n].front, expected[n].front) << n;

@@ -162,7 +162,7 @@ TEST(MostScattered, NoSurfaceScattersMore) {
         object.role = n % 2 == 0 ? Role::fixed : Role::vegetation;
         skin.map.objects.push_back(object);
         skin.map.meshes.emplace_back().primitives.push_back(skin.primitive);
-        const float most = trace::most_scattered(skin.map);
+        const float most = trace::max_scattered(skin.map);
         EXPECT_LT(most, 1);
         float seen = 0;
         for (int k = 0; k < 40; ++k) {
@@ -182,14 +182,14 @@ TEST(MostScattered, NoSurfaceScattersMore) {
 
 TEST(MostScattered, IsOfTheBrightestThatIsThere) {
     Skin skin(glm::vec3(0.5f));
-    EXPECT_EQ(trace::most_scattered(skin.map), trace::least_scattered);
+    EXPECT_EQ(trace::max_scattered(skin.map), trace::min_scattered);
     skin.map.meshes.emplace_back().primitives.push_back(skin.primitive);
-    EXPECT_EQ(trace::most_scattered(skin.map), trace::least_scattered);  // no object wears it
+    EXPECT_EQ(trace::max_scattered(skin.map), trace::min_scattered);  // no object wears it
     skin.map.objects.emplace_back();
-    EXPECT_EQ(trace::most_scattered(skin.map), 0.5f);
+    EXPECT_EQ(trace::max_scattered(skin.map), 0.5f);
     skin.material().double_sided = true;
     skin.map.objects.emplace_back().role = Role::vegetation;
-    EXPECT_EQ(trace::most_scattered(skin.map), 0.75f);
+    EXPECT_EQ(trace::max_scattered(skin.map), 0.75f);
 }
 
 TEST(SurfaceEmission, OfTheBackIsNoneUnlessDoubleSided) {

@@ -33,7 +33,7 @@ TEST(Transparency, MaskedTexelDoesNotOcclude) {
 
 TEST(Transparency, MaskedTexelIsNoCrossingOfAColumn) {
     const auto scene = scene_of(leaf_over_ground("static"));
-    std::vector<trace::ColumnHit> hits;
+    std::vector<placement::ColumnHit> hits;
     scene->column({1.5f, 0.5f}, hits);
     EXPECT_EQ(hits.size(), 2u);
     scene->column({-1.5f, 0.5f}, hits);

@@ -151,7 +151,7 @@ TEST(Triangle, EmbreeErrsByLessThanItsBound) {
     const auto device = trace::Device::open().value();
     std::mt19937 random(17);
     const auto power = [&](float low, float high) { return std::pow(10.0f, between(random, low, high)); };
-    double worst_sure = 0, worst_order = 0, most_added = 0;
+    double worst_sure = 0, worst_order = 0, max_added = 0;
     int sure = 0, met = 0;
     for (int n = 0; n < 6000; ++n) {
         const float size = power(-2, 2);
@@ -221,18 +221,18 @@ TEST(Triangle, EmbreeErrsByLessThanItsBound) {
                 continue;
             worst_order = std::max(worst_order, (double{r.ray.tfar} - order_m) / slack_m);
             if (cosine > 0.1)
-                most_added = std::max(most_added, order_m - at->distance_m);
+                max_added = std::max(max_added, order_m - at->distance_m);
         }
     }
     std::printf(
         "sure: off by up to %.3f of the slack; beyond the order by up to %.3f of it; not grazing, up to %.4f "
         "m added; %d of %d sure\n",
-        worst_sure, worst_order, most_added, sure, met);
+        worst_sure, worst_order, max_added, sure, met);
     EXPECT_GT(met, 250000);
     EXPECT_GT(sure, 40000);
     EXPECT_LT(worst_sure, 0.5);
     EXPECT_LT(worst_order, 1);
-    EXPECT_LT(most_added, 0.05);
+    EXPECT_LT(max_added, 0.05);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ int rays_a_shape() {
 }
 
 // Of rays aimed exactly at vertices a few pass (trace::beside says why): a share of them all.
-constexpr double most_through_vertices = 2e-5;
+constexpr double max_through_vertices = 2e-5;
 
 // n x n squares a side, corners shared.
 Shape tessellated_box(std::uint32_t n) {
@@ -93,7 +93,7 @@ void expect_closed(const Shape& shape, bool turned, unsigned seed) {
         (a == b ? through_vertices : through_edges) += closed ? 0 : 1;
     }
     EXPECT_EQ(through_edges, 0);
-    EXPECT_LE(through_vertices, most_through_vertices * rays) << "of " << rays << " rays";
+    EXPECT_LE(through_vertices, max_through_vertices * rays) << "of " << rays << " rays";
     EXPECT_EQ(through_both, 0);
 }
 

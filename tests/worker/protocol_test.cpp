@@ -9,8 +9,10 @@ namespace {
 const map::Digest some_digest = map::digest_of(test::bytes_of("some"));
 
 BakeRequest bake_request() {
-    return {
-        some_digest, {-16384, 16384}, {.rays = 17, .bounces = 0, .reach_m = 0.1f, .min_distance_m = 64}, {}};
+    return {some_digest,
+            {-16384, 16384},
+            {{.rays = 17, .bounces = 0, .reach_m = 0.1f, .min_distance_m = 64}, 0.01f},
+            {}};
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
@@ -89,7 +91,7 @@ TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
     EXPECT_EQ(std::tuple(baked.blobs.file, baked.file_bytes, baked.probes, baked.rays),
               std::tuple(some_digest, 15000, 70, 1LL << 40));
     EXPECT_EQ(baked.warnings, std::vector<std::string>{"a wall"});
-    const auto failure = std::get<Failure>(round(Failure{"two\nlines, \"quotes\"", true}));
+    const auto failure = std::get<RequestFailure>(round(RequestFailure{"two\nlines, \"quotes\"", true}));
     EXPECT_EQ(failure.sentence, "two\nlines, \"quotes\"");
     EXPECT_TRUE(failure.may_retry);
     const auto inspected = std::get<MapSummary>(round(MapSummary{
@@ -101,9 +103,9 @@ TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
 }
 
 TEST(WorkerProtocol, ASentenceThatIsNotUtf8IsStillALine) {
-    const auto answer = decode_answer(encode(Answer{1, Failure{"broken \xff\xfe", false}}));
+    const auto answer = decode_answer(encode(Answer{1, RequestFailure{"broken \xff\xfe", false}}));
     ASSERT_TRUE(answer);
-    EXPECT_TRUE(std::get<Failure>(answer->what).sentence.starts_with("broken "));
+    EXPECT_TRUE(std::get<RequestFailure>(answer->what).sentence.starts_with("broken "));
 }
 
 TEST(WorkerProtocol, GarbageIsNothing) {

@@ -1,6 +1,7 @@
 // Conventions shared by baker and game: axes, basis, spherical harmonics, fixed point. The normative text is
-// SPEC.md, section 2; every constant here stands there too. "The talk", here and in other headers: M.
-// Gilabert and N. Stefanov, "Deferred Radiance Transfer Volumes: Global Illumination in Far Cry 3", GDC 2012.
+// SPEC.md, section 2; SPEC.md has every constant of this header too. "The talk" in this and other headers is
+// M. Gilabert and N. Stefanov, "Deferred Radiance Transfer Volumes: Global Illumination in Far Cry 3", GDC
+// 2012.
 //
 // Everything is constexpr, pure and thread-safe.
 //
@@ -17,9 +18,10 @@ namespace drtv {
 
 using Float3 = std::array<float, 3>;
 using Float4 = std::array<float, 4>;
-using Double3 = std::array<double, 3>;  // places in the world, in metres
+using Double3 = std::array<double, 3>;  // a place in the world, in metres
 
-// World: right-handed, z up, metres. A sector is a square of this side, all heights (slide 24 of the talk).
+// World: right-handed, z up, metres. A sector is a square with sides of this length, at all heights (slide 24
+// of the talk).
 inline constexpr int sector_size_m = 64;
 
 // Positions are whole multiples of 2^-10 m, so that 16 bits span one sector's side exactly.
@@ -36,8 +38,8 @@ inline constexpr std::array<Float3, basis_count> transfer_basis = {{{-0.408248f,
                                                                     {0.816497f, 0.0f, 0.577350f},
                                                                     {0.0f, 0.0f, -1.0f}}};
 
-// What an open sky of radiance 1 gives to a cosine around basis direction b: the part of it that is above the
-// horizon.
+// E/pi around basis direction b under an open sky of radiance 1, 0 to 1: the part of the cosine lobe that
+// lies above the horizon.
 [[nodiscard]] constexpr float open_sky_share(std::size_t b) {
     return (1 + transfer_basis[b][2]) / 2;
 }
@@ -51,11 +53,11 @@ inline constexpr float sh_y1 = 0.488603f;
     return {sh_y0, sh_y1 * w[1], sh_y1 * w[2], sh_y1 * w[0]};
 }
 
-inline constexpr std::size_t max_probes = 255;  // a sector's; index 255 means "no probe"
+inline constexpr std::size_t max_probes = 255;  // per sector; index 255 means "no probe"
 inline constexpr std::uint8_t no_probe = 255;
 
-inline constexpr std::size_t max_local_sources = 128;              // that one probe takes light from
-inline constexpr std::size_t max_sector_sources = 9 * max_probes;  // of a sector: all its neighbours' too
+inline constexpr std::size_t max_local_sources = 128;              // per probe: those that send light to it
+inline constexpr std::size_t max_sector_sources = 9 * max_probes;  // per sector, with its neighbours' probes
 
 inline constexpr std::size_t grid_size = 16;  // cells along each axis
 inline constexpr std::size_t grid_cell_count = grid_size * grid_size * grid_size;
@@ -65,17 +67,17 @@ inline constexpr float fixed_point_max = 32767.0f;
 inline constexpr float transfer_scale = 0.5f;
 inline constexpr float sky_visibility_scale = 1.0f;
 
-// Bounds of any passive scene's transfer (SPEC.md, section 3): 1/(2 sqrt pi) for i = 0 and sqrt(3/(4 pi))
-// else.
+// Bounds of the transfer coefficients of any passive scene (SPEC.md, section 3): 1/(2 sqrt pi) for i = 0 and
+// sqrt(3/(4 pi)) for i > 0.
 inline constexpr float transfer_bound_y0 = 0.2821f;
 inline constexpr float transfer_bound_y1 = 0.4887f;
 
-// A scale that a file gives as an exponent: 2^exponent, exact, for an exponent of -126 to 126. One beyond
-// counts as the nearest, so that no file makes a scale that is not a normal float.
+// The scale that a file stores as an exponent: 2^exponent, exact. The exponent is clamped to -126 to 126, so
+// that every scale is a normal float.
 [[nodiscard]] constexpr float scale_of_exponent(int exponent) {
     constexpr int limit = 126, float_bias = 127, float_mantissa_bits = 23;
     const auto biased = static_cast<std::uint32_t>(std::clamp(exponent, -limit, limit) + float_bias);
-    return __builtin_bit_cast(float, biased << float_mantissa_bits);  // std::bit_cast is too new for some
+    return __builtin_bit_cast(float, biased << float_mantissa_bits);  // some compilers lack std::bit_cast
 }
 
 [[nodiscard]] constexpr float decode_fixed(std::int16_t q, float scale) {

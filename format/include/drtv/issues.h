@@ -1,11 +1,11 @@
-// The table of all that a validator can find: constants, thread-safe.
+// The table of all issues that a validator can find. Constants, thread-safe.
 //
 //     const drtv::Issue* issue = drtv::issue_of_code("CHECKSUM");
 //     if (issue != nullptr && issue->severity == drtv::Severity::error) puts("a file with it is invalid");
 //
-//  A code never changes its meaning, and none is used again:
-// `STRUCTURE` of drtv 0.1.0 is retired, in its place stand the codes of the group structure. format/ISSUES.md
-// is made from this table (`drtv issues`).
+// A code never changes its meaning and is never used again for another issue. `STRUCTURE` of drtv 0.1.0 is
+// retired: the codes of the group `structure` replace it. `drtv issues` prints format/ISSUES.md from this
+// table.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ namespace drtv {
 enum class Severity : std::uint8_t { error, warning };
 
 enum class IssueGroup : std::uint8_t {
-    structure,     // a reader looks for them too, but for the warnings
+    structure,     // a reader checks these too, except the warnings
     quantisation,  // codes and exponents
-    physics,       // what no passive scene gives
-    index,         // what names something else
+    physics,       // values that no passive scene gives
+    index,         // references to probes and sources, and names
     borders,       // two sectors side by side, --neighbours only
     set,           // all sectors of a folder, --neighbours only
 };
@@ -65,7 +65,7 @@ inline constexpr ErrorIssue checksum("CHECKSUM",
                                      "a stored checksum does not match the bytes it covers");
 inline constexpr ErrorIssue missing_section("MISSING_SECTION",
                                             structure,
-                                            "a section that every file has is not there");
+                                            "a section that every file must have is missing");
 inline constexpr ErrorIssue section("SECTION",
                                     structure,
                                     "the content of a section breaks a rule of its structure");
@@ -152,19 +152,19 @@ inline constexpr ErrorIssue local_source_duplicate("LOCAL_SOURCE_DUPLICATE",
 inline constexpr ErrorIssue light_group_name(
     "LIGHT_GROUP_NAME",
     index,
-    "the name of a light group is no UTF-8, or does not stand behind the name before it in order");
+    "the name of a light group is not UTF-8, or does not sort after the name before it");
 
 inline constexpr ErrorIssue neighbour_source(
     "NEIGHBOUR_SOURCE", borders, "a local source is a probe that the neighbouring sector does not have");
 inline constexpr WarningIssue neighbour_sections(
     "NEIGHBOUR_SECTIONS",
     borders,
-    "of two neighbouring sectors one has a section of light that the other has not");
+    "one of two neighbouring sectors has a section of light that the other lacks");
 inline constexpr WarningIssue neighbour_step("NEIGHBOUR_STEP",
                                              borders,
                                              "light changes across a border much more than inside the two "
                                              "sectors, and than heights and sky visibility "
-                                             "on both sides explain: they were baked of different maps");
+                                             "on both sides explain: they were baked from different maps");
 
 inline constexpr ErrorIssue set_duplicate("SET_DUPLICATE", set, "two files hold the same sector");
 inline constexpr ErrorIssue set_settings(
@@ -174,11 +174,11 @@ inline constexpr WarningIssue set_hole("SET_HOLE",
                                        "a sector is missing although sectors are all around it");
 inline constexpr WarningIssue set_file_name("SET_FILE_NAME",
                                             set,
-                                            "the file is named for another sector than it holds");
+                                            "the file name says another sector than the file holds");
 
 }  // namespace issue
 
-// All of them, in the order of this page.
+// All issues, in the order of this header.
 [[nodiscard]] std::span<const Issue* const> all_issues();
 
 // Null where no issue has this code.

@@ -1,8 +1,9 @@
-// Reading a sector file from untrusted bytes. Never throws on bad input, never reads outside `bytes`,
-// allocates little more than twice what its sections say they hold: some kilobytes, 16 MiB a section at most.
+// Reads a sector file from untrusted bytes. Never throws on bad input and never reads outside `bytes`.
+// Allocates at most about twice the decoded size of the sections, which is some kilobytes and at most 16 MiB
+// per section.
 //
-// Pure functions, thread-safe. A file of 70 probes takes some 50 us, most of it for zstd where it is
-// compressed. Games open raw files where they lie, without a copy: drtv/view.h.
+// Pure functions, thread-safe. A file of 70 probes takes some 50 us, most of that for zstd where the file is
+// compressed. Games open raw files in place, without a copy: drtv/view.h.
 //
 //     drtv::Sector sector;
 //     const drtv::ReadStatus status = drtv::read_sector(bytes, sector);
@@ -30,14 +31,14 @@ enum class ReadError : std::uint8_t {
     checksum_mismatch,    // header or section bytes were changed
     missing_section,      // a required section is not there
     bad_section,          // a section's content breaks its rule
-    compressed,           // a section is not raw: of open_sector, and of a library without zstd
+    compressed,           // a section is not raw: from open_sector, or a library built without zstd
     misaligned,           // open_sector only: the bytes do not start at a multiple of 16
 };
 
 struct [[nodiscard]] ReadStatus {
     ReadError error = ReadError::none;
-    std::uint64_t offset =
-        0;                // byte in the file at which the rule is broken; a compressed section's first byte
+    // Byte in the file at which the rule is broken; inside a compressed section, that section's first byte.
+    std::uint64_t offset = 0;
     std::string message;  // what, where, value; empty when there is no error
 
     [[nodiscard]] bool ok() const { return error == ReadError::none; }
@@ -61,10 +62,10 @@ enum class SectionKind : std::uint16_t {
 enum class Codec : std::uint8_t {
     raw = 0,
     zstd = 1,
-    filtered = 2,  // zstd behind a filter (SPEC.md, section 5.10): local transfer of section version 2 or 3
+    filtered = 2,  // a filter, then zstd (SPEC.md, section 5.10): local transfer of section version 2 or 3
 };
 
-// One line of the table of sections, as it stands in the file.
+// One entry of the file's table of sections.
 struct SectionEntry {
     std::uint16_t kind = 0;  // a SectionKind, or one that this reader skips
     std::uint16_t version = 0;
@@ -78,7 +79,7 @@ struct SectionEntry {
 // "bake", "positions", ... or "unknown".
 [[nodiscard]] std::string_view name_of_section(std::uint16_t kind);
 
-// Checks structure and checksums and gives the table. On error `entries` is empty.
+// Checks structure and checksums and fills `entries` in the order of the file. On error `entries` is empty.
 ReadStatus read_section_table(std::span<const std::uint8_t> bytes, std::vector<SectionEntry>& entries);
 
 // Reads the whole sector. On error `sector` is left as it was.

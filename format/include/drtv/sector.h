@@ -39,9 +39,9 @@ struct Probe {
     bool operator==(const Probe&) const = default;
 };
 
-// A probe a cell, one that it sees. Cell (x, y, z) stands at index x + 16 y + 256 z; cells
-// are 4 m wide. The reader takes any index: one that is not below the number of probes counts as `no_probe`
-// (SPEC.md, section 5.5).
+// One probe per cell, if possible one that the cell sees. Cell (x, y, z) has the index x + 16 y + 256 z;
+// cells are 4 m wide. The reader accepts any value: one that is not below the number of probes counts as
+// `no_probe` (SPEC.md, section 5.5).
 struct Grid {
     std::int32_t z_origin_units = 0;      // bottom of the lowest cells, 2^-10 m
     std::uint32_t cell_height_units = 1;  // 2^-10 m, 1 to 2^24
@@ -50,11 +50,11 @@ struct Grid {
     bool operator==(const Grid&) const = default;
 };
 
-// What was asked of the baker, and who it was. Equal settings_key: comparable files.
+// What was asked of the baker, and which baker it was. Files with the same settings_key are comparable.
 struct BakeRecord {
-    std::uint32_t rays = 0;     // primary rays a probe
+    std::uint32_t rays = 0;     // primary rays per probe
     std::uint32_t bounces = 0;  // surface bounces
-    float reach_m = 0;          // farther than this from the probe is sky
+    float reach_m = 0;          // what is farther from the probe is sky
     float min_distance_m = 0;   // between automatic probes
     std::array<std::uint8_t, 32>
         settings_key{};  // SHA-256 over settings, format version, baker and ISA class
@@ -63,19 +63,19 @@ struct BakeRecord {
 
 // Counts of the bake: a pure function of the map, like all else in the file (no times).
 struct Statistics {
-    std::uint32_t candidates = 0;         // columns' proposals inside the sector
+    std::uint32_t candidates = 0;         // proposed places inside the sector
     std::uint32_t moved_out = 0;          // probes moved out of a solid
     std::uint32_t dropped_in_solid = 0;   // probes for which no free place was found
     std::uint32_t removed_by_volume = 0;  // inside a no_probes volume
-    std::uint32_t thinned = 0;            // given up to stay within 255
+    std::uint32_t thinned = 0;            // probes given up to stay within 255
     float used_distance_m = 0;            // minimal distance in the end; min_distance_m unless thinned
     std::uint64_t rays = 0;               // all rays of the integration
-    std::uint64_t back_hits = 0;          // of these, hits on the back of a one-sided surface
+    std::uint64_t back_hits = 0;          // rays that hit the back of a one-sided surface
 
     bool operator==(const Statistics&) const = default;
 };
 
-// [channel r, g, b][basis direction or SH coefficient], fixed point; the scale stands beside it as an
+// [channel r, g, b][basis direction or SH coefficient], fixed point; the scale is stored beside it as an
 // exponent.
 using LightCodes = std::array<std::array<std::int16_t, 4>, channel_count>;
 
@@ -88,7 +88,7 @@ struct StaticIrradiance {
     bool operator==(const StaticIrradiance&) const = default;
 };
 
-// A probe whose place a local light may have: probe `probe` of the sector (i + di, j + dj), di and dj in
+// A probe at whose place a local light may stand: probe `probe` of the sector (i + di, j + dj), di and dj in
 // -1..1.
 struct LocalSource {
     std::int8_t di = 0, dj = 0;
@@ -98,20 +98,20 @@ struct LocalSource {
     bool operator==(const LocalSource&) const = default;
 };
 
-// One probe's row of the matrix receiver x source, which is sparse: which pairs there are and where they
-// begin.
+// One probe's row of the sparse matrix receiver x source: which pairs it has and the index of its first one.
 struct LocalReceiver {
     std::uint32_t first_pair = 0;
     std::int8_t exponent = 0;  // its part of the scale of its pairs
-    // Bit s & 7 of byte s >> 3: source s has a pair. Up to local_mask_bytes; bytes that are not there are 0.
+    // Bit s & 7 of byte s >> 3 is 1 where source s has a pair. At most local_mask_bytes; missing bytes count
+    // as 0.
     std::vector<std::uint8_t> sources;
 
     bool operator==(const LocalReceiver&) const = default;
 };
 
-// Bytes of a receiver's mask, for that many sources.
+// Bytes of a receiver's mask for that many sources: a multiple of 16, at least 16.
 [[nodiscard]] constexpr std::size_t local_mask_bytes(std::size_t sources) {
-    constexpr std::size_t step = 128;  // sources for 16 bytes
+    constexpr std::size_t step = 128;  // sources per 16 bytes
     return sources <= step ? step / 8 : (sources + step - 1) / step * (step / 8);
 }
 
@@ -124,28 +124,28 @@ struct LocalReceiver {
 // of receiver p and source s: R_c[i] = 2^(receiver exponent + source exponent) * code / 32767.
 struct LocalTransfer {
     std::vector<LocalSource> sources;      // at most max_sector_sources
-    std::vector<LocalReceiver> receivers;  // one a probe
-    std::vector<LightCodes> pairs;         // [c][i]; a receiver's in the order of its sources
+    std::vector<LocalReceiver> receivers;  // one per probe
+    std::vector<LightCodes> pairs;         // [c][i]; by receiver, then by source
 
     bool operator==(const LocalTransfer&) const = default;
 };
 
-// What was asked and what was reached, when it was measured.
+// What was asked of the bake and what it reached, for bakes that measured it.
 struct Convergence {
     // Relative standard error of E/pi relit by a sky of radiance 1 (SPEC.md, section 5.9).
     float error_asked = 0;                                 // 0: a fixed number of paths
     float error_median = 0, error_p95 = 0, error_max = 0;  // over the sector's probes
-    std::uint32_t paths_least = 0, paths_most = 0;         // a probe
+    std::uint32_t paths_least = 0, paths_most = 0;         // per probe
     std::uint32_t local_bounces = 0;                       // 0 where the file has no local transfer
-    std::uint32_t local_rays = 0;                          // traced from each source; 0 likewise
+    std::uint32_t local_rays = 0;                          // traced from each source; 0 as above
     std::uint64_t static_rays = 0;                         // for static irradiance, shadow rays included
     std::uint64_t local_transfer_rays = 0;
 
     bool operator==(const Convergence&) const = default;
 };
 
-// A closed mesh; what is inside uses one probe (slide 56 of the talk). Vertex v stands at the world position,
-// in units of 2^-10 m, origin_units + vertices[v] * 2^shift.
+// A closed mesh; what is inside uses one probe (slide 56 of the talk). Vertex v stands at the world position
+// origin_units + vertices[v] * 2^shift, in units of 2^-10 m.
 struct Interior {
     std::array<std::int32_t, 3> origin_units{};
     std::uint8_t shift = 0;  // at most max_interior_shift
@@ -157,7 +157,8 @@ struct Interior {
     bool operator==(const Interior&) const = default;
 };
 
-// Static irradiance of lights that a game switches and colours together: one a probe. It is in no other.
+// Static irradiance of the lights that a game switches and colours together, one per probe. Their light is in
+// no other group and not in Sector::static_irradiance.
 struct LightGroup {
     std::string name;  // UTF-8, 1 to max_light_group_name bytes
     std::vector<StaticIrradiance> irradiance;
@@ -165,12 +166,12 @@ struct LightGroup {
     bool operator==(const LightGroup&) const = default;
 };
 
-// What is known of a probe's light (SPEC.md, section 5.13). Errors are standard errors over the mean of the
-// same numbers, each on its own scale.
+// How exact a probe's light is (SPEC.md, section 5.13). Each error is a standard error divided by the mean of
+// the same numbers.
 struct ProbeQuality {
     float transfer_error = 0;  // of the bounce, relit by a sky of radiance 1
     float visibility_error = 0;
-    float static_error = 0;  // of what is in no group
+    float static_error = 0;  // of the light that is in no group
     std::uint32_t paths = 0;
     std::uint32_t back_hits = 0;  // rays that ended at the back of a one-sided surface
     bool budget_ended = false;    // paths were used up before the error that was asked for was reached
@@ -181,10 +182,10 @@ struct ProbeQuality {
 };
 
 struct Quality {
-    std::uint32_t buried_cells = 0;                // of the grid: in solids or under ground
-    std::uint32_t blind_cells = 0;                 // of the others: that do not see the probe they name
-    std::vector<ProbeQuality> probes;              // one a probe
-    std::vector<std::vector<float>> group_errors;  // [light group][probe], of the groups when it was baked
+    std::uint32_t buried_cells = 0;                // of the grid: in solids or under the ground
+    std::uint32_t blind_cells = 0;                 // other cells, which see no probe that they may name
+    std::vector<ProbeQuality> probes;              // one per probe
+    std::vector<std::vector<float>> group_errors;  // [light group][probe], of the groups in the bake
 
     bool operator==(const Quality&) const = default;
 };
@@ -197,20 +198,21 @@ struct Sector {
     Grid grid;
     BakeRecord bake;
     Statistics statistics;
-    // Of format 1.1, each optional:
-    std::vector<StaticIrradiance> static_irradiance;  // empty or one a probe
+    // Since format 1.1, each optional:
+    std::vector<StaticIrradiance> static_irradiance;  // empty or one per probe
     std::optional<LocalTransfer> local_transfer;
     std::optional<Convergence> convergence;
-    // Of format 1.2, optional:
+    // Since format 1.2, optional:
     std::vector<Interior> interiors;  // at most max_interiors
-    // Of format 1.3, each optional:
-    std::vector<LightGroup> light_groups;  // at most max_light_groups, by name
+    // Since format 1.3, each optional:
+    std::vector<LightGroup> light_groups;  // at most max_light_groups, sorted by name
     std::optional<Quality> quality;
 
     bool operator==(const Sector&) const = default;
 };
 
-// A sector coordinate is refused beyond this, so that no position leaves the exact range of 32-bit units.
+// Sector coordinates beyond +-max_sector_coordinate are refused, so that every position in units fits 32
+// bits.
 inline constexpr std::int32_t max_sector_coordinate = 1 << 14;
 inline constexpr std::uint8_t max_z_shift = 10;
 inline constexpr std::int32_t max_z_origin_units = 1 << 30;       // of the sector and of the grid

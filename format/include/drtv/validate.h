@@ -1,5 +1,6 @@
-// What a sector file must keep beyond being readable. The daemon publishes nothing that has an error here.
-// Pure and thread-safe: files may be checked on all cores. Costs some 0.1 ms for a file of 70 probes.
+// Checks every rule of a sector file, not only those that a reader checks. The daemon publishes no file that
+// has an error. Pure and thread-safe: files may be checked on all cores. Costs some 0.1 ms for a file of 70
+// probes.
 //
 //     const drtv::Report report = drtv::validate_sector(bytes);
 //     for (const drtv::Finding& finding : report.findings) puts(finding.message.c_str());
@@ -25,8 +26,8 @@ struct Finding {
 };
 
 struct Report {
-    std::vector<Finding> findings;         // by section in the order of their kinds
-    std::size_t errors = 0, warnings = 0;  // all of them, also those behind the cap
+    std::vector<Finding> findings;         // in the order of the section kinds
+    std::size_t errors = 0, warnings = 0;  // all findings, also those beyond max_findings
     bool truncated = false;                // there are more than `findings` shows
 
     [[nodiscard]] bool valid() const { return errors == 0; }
@@ -36,11 +37,11 @@ struct ValidateOptions {
     bool quick = false;              // structure and checksums only: what a reader checks
     std::size_t max_findings = 100;  // shown; REQUIRES: > 0
     std::span<const Issue* const> ignored =
-        {};  // neither shown nor counted; errors of the structure are nevertheless
+        {};  // neither shown nor counted, except for errors of the group `structure`
 };
 
-// Counts a finding of this issue, unless it is ignored. True where it is to be appended to report.findings:
-// not behind the cap.
+// Counts a finding of this issue, unless it is ignored. Returns true where the caller should append it to
+// report.findings: while they are fewer than max_findings.
 [[nodiscard]] bool admit(Report& report, const Issue& issue, const ValidateOptions& options);
 
 // Any bytes give a report. Thread-safe.

@@ -1,9 +1,10 @@
-// What sectors of one region owe each other: they tile a map without holes, were baked alike, and fit at
-// their borders. Pure and thread-safe; costs some microseconds per sector, its own file not counted.
+// Checks the sectors of a region against each other: they cover the map without holes, were baked alike, and
+// agree at their borders. Pure and thread-safe; costs some microseconds per sector, reading its file not
+// included.
 //
 //     std::vector<drtv::RegionSector> sectors;                  // read_region_sector of each file
 //     for (const drtv::RegionFinding& found : drtv::validate_region(sectors))
-//     puts(found.finding.message.c_str());
+//         puts(found.finding.message.c_str());
 #pragma once
 
 #include <drtv/read.h>
@@ -19,10 +20,10 @@
 
 namespace drtv {
 
-// What of a sector the others are held against: a few kilobytes, so that a whole world fits into memory.
+// The part of a sector that is compared with others: a few kilobytes, so that a whole world fits into memory.
 struct RegionSector {
     std::int32_t i = 0, j = 0;
-    // The sector that the file's name tells, where it has the form sector_<i>_<j>.drtv; set by the caller.
+    // The sector in the file's name, where the name has the form sector_<i>_<j>.drtv; set by the caller.
     std::optional<std::array<std::int32_t, 2>> named;
 
     BakeRecord bake;
@@ -39,17 +40,18 @@ struct RegionSector {
     bool local_raw = true;
 };
 
-// REQUIRES for success: a file that can be read. On error `sector` is left as it was.
+// Reads `sector` from a file's bytes. REQUIRES for success: a file that can be read. On error `sector` is
+// left as it was.
 ReadStatus read_region_sector(std::span<const std::uint8_t> bytes, RegionSector& sector);
 
 struct RegionFinding {
-    std::size_t sector = 0;  // index into the sectors that were handed in
+    std::size_t sector = 0;  // index into the sectors that were passed
     Finding finding;
 };
 
 // Findings of the groups `borders` and `set`, by sector, then in the order of the table of issues. The order
-// of `sectors` decides nothing but which of two files of one sector counts. Sectors `also_there` are (i, j)
-// of files that cannot be read: no holes.
+// of `sectors` matters only where two files hold one sector: it decides which of them counts. `also_there`
+// are the (i, j) of files that cannot be read, which therefore are not holes.
 [[nodiscard]] std::vector<RegionFinding> validate_region(
     std::span<const RegionSector> sectors, std::span<const std::array<std::int32_t, 2>> also_there = {});
 

@@ -1,9 +1,8 @@
-// A sector used where it lies: a raw sector file in memory, mapped or loaded, without a copy. For games: sets
-// of them are drtv/sector_set.h's.
+// Uses a raw sector file in place, mapped or loaded, without a copy. For games; drtv/sector_set.h has sets of
+// sectors.
 //
-// Pure functions, thread-safe, no allocation but for an error's message. Opening checks every byte once: some
-// 2 us for a file of 14 KB. What is asked after that costs nanoseconds, but for interiors, which look at each
-// triangle.
+// Pure functions, thread-safe; only error messages allocate. Opening checks every byte once: some 2 us for a
+// file of 14 KB. Later calls cost nanoseconds, except those on interiors, which look at each triangle.
 //
 //     drtv::SectorView sector;
 //     if (drtv::open_sector(mapped_bytes, sector).ok()) {
@@ -29,7 +28,7 @@ namespace drtv {
 static_assert(std::endian::native == std::endian::little,
               "the file's integers are little-endian and used as they lie");
 
-// What stands in the file, byte for byte (SPEC.md, section 5).
+// The structures in the file, byte for byte (SPEC.md, section 5).
 struct StoredPosition {
     std::array<std::uint16_t, 3> position;
     ProbeKind kind;
@@ -52,12 +51,12 @@ struct StoredInterior {
     std::array<std::uint8_t, 2> reserved;
     std::uint32_t first_vertex, vertex_count, first_triangle, triangle_count;
 };
-using StoredName = std::array<char, max_light_group_name + 1>;  // zeros behind it
+using StoredName = std::array<char, max_light_group_name + 1>;  // filled up with zeros
 static_assert(sizeof(StoredPosition) == 8 && sizeof(StoredGrid) == 4112 && sizeof(StoredReceiver) == 8 &&
               sizeof(StoredInterior) == 32);
 
-// Points into the file's bytes and lives no longer than they do. Probe p of one span is probe p of every
-// other. Spans of optional sections are empty where the file has none.
+// Points into the file's bytes, which must outlive it. Probe p of one span is probe p of every other. Spans
+// of optional sections are empty where the file has none.
 struct SectorView {
     std::int32_t i = 0, j = 0;
     std::int32_t z_origin_units = 0;
@@ -72,27 +71,27 @@ struct SectorView {
     std::span<const std::int8_t> static_exponents;
     std::span<const LocalSource> local_sources;
     std::span<const StoredReceiver> local_receivers;
-    std::span<const std::uint8_t> local_masks;  // local_mask_bytes a receiver
+    std::span<const std::uint8_t> local_masks;  // local_mask_bytes per receiver
     std::size_t local_mask_bytes = 0;
     std::span<const LightCodes> local_pairs;  // [c][i], scale 2^(receiver's + source's exponent)
     std::span<const StoredInterior> interiors;
-    std::span<const std::array<std::uint16_t, 3>> interior_vertices;  // all interiors'
+    std::span<const std::array<std::uint16_t, 3>> interior_vertices;  // of all interiors
     std::span<const std::array<std::uint16_t, 3>>
         interior_triangles;  // indices within their interior's vertices
     std::span<const StoredName> light_group_names;
-    std::span<const LightCodes> light_group_irradiance;  // group by group, one a probe: [c][b]
+    std::span<const LightCodes> light_group_irradiance;  // group by group, one per probe: [c][b]
     std::span<const std::int8_t> light_group_exponents;  // likewise
 };
 
-// The sector that lies in `bytes`. Checks all that read_sector checks, untrusted bytes are safe. Allocates
-// nothing, unless it fails (the message). A file with a compressed section fails with `compressed`: see
+// Opens the sector in `bytes`. Checks all that read_sector checks; untrusted bytes are safe. Allocates
+// nothing but the message of an error. A file with a compressed section fails with `compressed`: see
 // unpack_sector. On error `view` is left as it was. REQUIRES for success: `bytes` starts at a multiple of 16
 // (a mapped file does), else `misaligned`.
 ReadStatus open_sector(std::span<const std::uint8_t> bytes, SectorView& view);
 
-// The same file with every section raw. Of sections that this reader does not know, nothing is kept. On error
-// `raw_file` is left as it was. (A vector's bytes start at a multiple of 16 with the allocators of 64-bit
-// systems, so that they can be opened.)
+// Makes the same file with every section raw. Sections that this reader does not know are dropped. On error
+// `raw_file` is left as it was. (The allocators of 64-bit systems start a vector's bytes at a multiple of 16,
+// so that open_sector takes them.)
 ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& raw_file);
 
 // World position of a probe in metres; exact in float within 16 km of the origin. REQUIRES: p <
@@ -101,17 +100,17 @@ ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::u
 // The same in double: exact everywhere.
 [[nodiscard]] Double3 exact_position_m(const SectorView& sector, std::size_t p);
 
-// The probe that the grid names for a world position (SPEC.md, section 5.5), which lights what is outside of
-// all interiors (find_interior is asked first), unless it is an interior's own (section 5.11); `no_probe`
-// where the cell has none: then nothing is added. What is beside, above or below the grid takes the nearest
-// cell.
+// The probe that the grid names for a world position (SPEC.md, section 5.5); `no_probe` where the cell has
+// none: then the open sky takes its place. The probe lights what is outside of all interiors (ask
+// find_interior first), unless it is an interior's own (section 5.11). A position beside, above or below the
+// grid takes the nearest cell.
 [[nodiscard]] std::uint8_t find_probe(const SectorView& sector, const Double3& world_m);
 
 // REQUIRES: the sector has static irradiance, p < sector.probe_count.
 [[nodiscard]] StaticIrradiance static_irradiance_of(const SectorView& sector, std::size_t p);
 
-// The index of the light group of that name in this sector; each sector has its own order. Nothing where the
-// group brings no light to its probes.
+// The index of the light group of that name in this sector; each sector has its own order. Empty where the
+// sector does not have the group, which then brings no light to its probes.
 [[nodiscard]] std::optional<std::size_t> find_light_group(const SectorView& sector, std::string_view name);
 
 // The group's name, by its index; it points into the file's bytes. REQUIRES: g <
@@ -123,8 +122,8 @@ ReadStatus unpack_sector(std::span<const std::uint8_t> bytes, std::vector<std::u
                                                          std::size_t g,
                                                          std::size_t p);
 
-// What a light at source `s` (an index of local_sources) sends to probe `p` by bounce. Codes are null where
-// the two are no pair: then the light adds nothing. REQUIRES: the sector has local transfer, p <
+// What a light at source `s` (an index into local_sources) sends to probe `p` by bounce. `codes` is null
+// where the two are not a pair: then the light adds nothing. REQUIRES: the sector has local transfer, p <
 // sector.probe_count, s < sector.local_sources.size().
 struct LocalPair {
     const LightCodes* codes = nullptr;
@@ -133,12 +132,12 @@ struct LocalPair {
 [[nodiscard]] LocalPair find_local_pair(const SectorView& sector, std::size_t p, std::size_t s);
 
 // Whether a world position is inside the closed mesh, by its winding number, so that triangles without an
-// area do no harm; on the mesh itself either.
+// area do no harm. On the mesh itself the answer may be either.
 [[nodiscard]] bool is_inside(const SectorView& sector,
                              const StoredInterior& interior,
                              const Double3& world_m);
 
-// Bounds in the world, in metres; of an interior without vertices, one that holds nothing.
+// Bounds in the world, in metres. Those of an interior without vertices hold nothing.
 struct InteriorBounds {
     Double3 low{};
     Double3 high{};
@@ -146,7 +145,7 @@ struct InteriorBounds {
 [[nodiscard]] InteriorBounds bounds_of(const SectorView& sector, const StoredInterior& interior);
 
 // Distance in metres from a world position to the closed mesh: above 0 inside, below 0 outside. Looks at
-// every triangle. Of an interior without triangles, minus infinity.
+// every triangle. Minus infinity for an interior without triangles.
 [[nodiscard]] double signed_distance_m(const SectorView& sector,
                                        const StoredInterior& interior,
                                        const Double3& world_m);

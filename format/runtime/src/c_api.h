@@ -65,8 +65,8 @@ inline VolumeSettings settings_of(const drtv_volume_settings& settings) {
 }
 
 // A light with its groups, which it points to.
-struct Light {
-    explicit Light(const drtv_light& from) {
+struct GameLight {
+    explicit GameLight(const drtv_light& from) {
         light.mode = from.mode == DRTV_LITERAL ? RelightMode::literal : RelightMode::accurate;
         std::memcpy(light.sky.data(), from.sky, sizeof light.sky);
         light.sun = {float3(from.sun_irradiance), float3(from.sun_direction)};
@@ -77,8 +77,8 @@ struct Light {
             groups[n] = {from.groups[n].name, float3(from.groups[n].colour)};
         light.groups = {groups.data(), count};
     }
-    Light(const Light&) = delete;
-    Light& operator=(const Light&) = delete;
+    GameLight(const GameLight&) = delete;
+    GameLight& operator=(const GameLight&) = delete;
 
     std::array<GroupColour, max_groups> groups;
     SceneLight light;

@@ -155,7 +155,7 @@ void drtv_ambient_at(const drtv_set* set,
                      size_t share_count,
                      const drtv_ambient_place* place,
                      drtv_ambient* ambient) {
-    const Light of(*light);
+    const GameLight of(*light);
     *ambient = ambient_of(ambient_at(*set, of.light, shares_of(shares, share_count), place_of(*place)));
 }
 
@@ -166,7 +166,7 @@ void drtv_ambient_in(const drtv_volume* volume,
                      size_t share_count,
                      const drtv_ambient_place* place,
                      drtv_ambient* ambient) {
-    const Light of(*light);
+    const GameLight of(*light);
     *ambient =
         ambient_of(ambient_in(*volume, *set, of.light, shares_of(shares, share_count), place_of(*place)));
 }

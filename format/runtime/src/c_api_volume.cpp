@@ -15,13 +15,13 @@ drtv_relit* drtv_relit_make(void* memory, size_t bytes, const drtv_limits* limit
 int drtv_relight_needed(
     const drtv_set* set, drtv_sector_id sector, const drtv_light* shown, const drtv_light* now, float step) {
     const LoadedSector* loaded = set->find({sector.i, sector.j});
-    const Light before(*shown);
-    const Light after(*now);
+    const GameLight before(*shown);
+    const GameLight after(*now);
     return loaded != nullptr && relight_needed(loaded->view, before.light, after.light, step) ? 1 : 0;
 }
 
 void drtv_relit_set_light(drtv_relit* relit, int shown, const drtv_light* light) {
-    relit->set_light(shown_of(shown), Light(*light).light);
+    relit->set_light(shown_of(shown), GameLight(*light).light);
 }
 
 int drtv_relit_sector(drtv_relit* relit,
@@ -34,7 +34,7 @@ int drtv_relit_sector(drtv_relit* relit,
     const LoadedSector* loaded = set->find({sector.i, sector.j});
     if (loaded == nullptr)
         return 0;
-    relit->relight(shown_of(shown), *loaded, Light(*light).light, shares_of(shares, share_count));
+    relit->relight(shown_of(shown), *loaded, GameLight(*light).light, shares_of(shares, share_count));
     return 1;
 }
 

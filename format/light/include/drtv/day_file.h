@@ -1,4 +1,5 @@
-// A day's gradients as JSON (format/light.schema.json), for the tools. Games fill drtv/day.h themselves.
+// A day's gradients as JSON (format/light.schema.json), for the tools. Games fill the structs of drtv/day.h
+// themselves.
 #pragma once
 
 #include <drtv/day.h>
@@ -8,15 +9,17 @@
 #include <string_view>
 #include <vector>
 
+#include <tl/expected.hpp>
+
 namespace drtv {
 
-// A day with what its spans point to.
+// A day, and the memory that its spans point to.
 class DayFile {
   public:
-    // Without a file: the built-in day.
+    // The built-in day.
     DayFile();
-    // An error in a sentence: where, what, value. Empty where the text could be read.
-    [[nodiscard]] static std::string read(std::string_view json, DayFile& file);
+    // Reads a day from JSON. An error is one sentence: where, what, value.
+    [[nodiscard]] static tl::expected<DayFile, std::string> read(std::string_view json);
 
     [[nodiscard]] const Day& day() const { return *day_; }
 
@@ -27,7 +30,7 @@ class DayFile {
     std::shared_ptr<const Day> day_;
 };
 
-// "14:00" as hours, also "14:30:15"; from 00:00 to 24:00. False for anything else.
+// Reads "14:00" or "14:30:15" as hours, from 00:00 to 24:00. False for anything else.
 [[nodiscard]] bool parse_time(std::string_view text, double& hours);
 
 }  // namespace drtv

@@ -1,11 +1,11 @@
-/* The runtime for C11 and for whatever calls C: Unity (P/Invoke), Rust, Python, Lua. It is libdrtv, a shared
- * library that shows these names alone, over the C++ of drtv/sector_set.h, relit_probes.h, volume.h,
- * ambient.h and light.h; what a call does, which units it takes and which calls may run at once stands there,
- * under the same names. In CMake it is drtv::c. Long because C callers include one header.
+/* The runtime for C11 and anything that calls C: Unity (P/Invoke), Rust, Python, Lua. libdrtv is a shared
+ * library that exports only these names, over the C++ of drtv/sector_set.h, relit_probes.h, volume.h,
+ * ambient.h and light.h. Those headers say, under the same names, what a call does, which units it takes and
+ * which calls may run at once. In CMake it is drtv::c. Long because C callers include one header.
  *
- * Memory is the caller's: ask for the size, hand in a piece that starts at a multiple of 16, free it when the
- * handle is no longer used. There is nothing else to free. Nothing is allocated after that, but for the text
- * of an error.
+ * Memory is the caller's: ask for the size, pass a block that starts at a multiple of 16, and free it when
+ * the handle is no longer used. There is nothing else to free. After that only the text of an error is
+ * allocated.
  *
  *     drtv_limits limits = drtv_default_limits();
  *     size_t bytes = drtv_set_bytes(&limits);
@@ -32,7 +32,7 @@
 extern "C" {
 #endif
 
-/* Rises from one release to the next when compiled callers no longer fit. Compare it with drtv_abi(). */
+/* Rises with a release that breaks compiled callers. Compare it with drtv_abi(). */
 #define DRTV_ABI 1
 DRTV_API uint32_t drtv_abi(void);
 /* "0.1.0" */
@@ -51,19 +51,19 @@ typedef struct drtv_limits {
 DRTV_API drtv_limits drtv_default_limits(void);
 
 DRTV_API size_t drtv_set_bytes(const drtv_limits* limits);
-/* NULL where the memory is too small or does not start at a multiple of 16; so are all makers. */
+/* NULL where the memory is too small or does not start at a multiple of 16. All makers do the same. */
 DRTV_API drtv_set* drtv_set_make(void* memory, size_t bytes, const drtv_limits* limits);
 
 enum { DRTV_LOADED = 0, DRTV_UNREADABLE = 1, DRTV_ALREADY_THERE = 2, DRTV_NO_ROOM = 3 };
-/* The file's bytes start at a multiple of 16 and stay until `retire` after `drop`; until then the sector
- * counts as already there. `why`, where it is not NULL, gets what is wrong, cut to `why_bytes` with a 0 at
- * its end. */
+/* The file's bytes must start at a multiple of 16 and stay in place until `retire` after `drop`; until then
+ * the sector counts as already there. `why`, where it is not NULL, gets the text of an error, cut to
+ * `why_bytes` with a 0 at its end. */
 DRTV_API int drtv_set_load(drtv_set* set, const void* file, size_t file_bytes, char* why, size_t why_bytes);
-/* 1 where it was there, else 0. */
+/* 1 where the sector was there, else 0. */
 DRTV_API int drtv_set_drop(drtv_set* set, int32_t i, int32_t j);
 DRTV_API void drtv_set_retire(drtv_set* set);
 DRTV_API int drtv_set_has(const drtv_set* set, int32_t i, int32_t j);
-/* A file of tiles; its bytes must stay. 1 where it could be read, else 0. */
+/* A file of tiles; its bytes must stay in place. 1 where it could be read, else 0. */
 DRTV_API int drtv_set_use_tiles(
     drtv_set* set, const void* file, size_t file_bytes, char* why, size_t why_bytes);
 
@@ -71,7 +71,7 @@ typedef struct drtv_sector_id {
     int32_t i;
     int32_t j;
 } drtv_sector_id;
-/* Nearest first; gives how many it wrote. */
+/* Nearest first, at most `room`. Returns how many it wrote. */
 DRTV_API size_t drtv_wanted_sectors(const double camera[3],
                                     double radius_m,
                                     drtv_sector_id* out,
@@ -93,7 +93,7 @@ typedef struct drtv_light {
     float sun_direction[3];
     float static_colour[3];
     float other_groups[3];
-    const drtv_group* groups; /* at most 64 count */
+    const drtv_group* groups; /* only the first 64 count */
     size_t group_count;
 } drtv_light;
 /* Accurate, dark, static colour 1. */
@@ -106,7 +106,7 @@ DRTV_API void drtv_gradient_sky(const float zenith[3],
                                 float sky[3][4]);
 typedef void (*drtv_sky_radiance)(const float direction[3], float radiance[3], void* user);
 DRTV_API void drtv_fit_sky(drtv_sky_radiance radiance, void* user, float sky[3][4]);
-/* Of drtv::default_day, accurate. For a day of your own, fill a light at each hour. */
+/* The light of drtv::default_day, accurate. For a day of your own, fill a light at each hour. */
 DRTV_API drtv_light drtv_light_of_default_day(double hour);
 
 typedef struct drtv_lamp {
@@ -123,7 +123,7 @@ typedef struct drtv_share {
     float reserved2;
 } drtv_share;
 enum { DRTV_SHARES_PER_LAMP = 8 };
-/* Gives how many shares it wrote, at most DRTV_SHARES_PER_LAMP, for which there must be room. */
+/* Returns how many shares it wrote. There must be room for DRTV_SHARES_PER_LAMP. */
 DRTV_API size_t drtv_split_light(const drtv_set* set, const drtv_lamp* lamp, drtv_share* shares);
 
 /* ---- Relit probes */
@@ -133,8 +133,8 @@ typedef struct drtv_relit drtv_relit;
 enum { DRTV_NOW = 0, DRTV_NEXT = 1 };
 DRTV_API size_t drtv_relit_bytes(const drtv_limits* limits, int with_fade);
 DRTV_API drtv_relit* drtv_relit_make(void* memory, size_t bytes, const drtv_limits* limits, int with_fade);
-/* 1 where a colour of the sector or of an open sky would change by more than `step`; 0 where it is not
- * loaded. */
+/* 1 where a colour of the sector or of an open sky would change by more than `step`, else 0; 0 where the
+ * sector is not loaded. */
 DRTV_API int drtv_relight_needed(
     const drtv_set* set, drtv_sector_id sector, const drtv_light* shown, const drtv_light* now, float step);
 DRTV_API void drtv_relit_set_light(drtv_relit* relit, int shown, const drtv_light* light);
@@ -148,15 +148,15 @@ DRTV_API int drtv_relit_sector(drtv_relit* relit,
                                size_t share_count);
 DRTV_API void drtv_relit_set_fade(drtv_relit* relit, float share);
 DRTV_API void drtv_relit_finish_fade(drtv_relit* relit);
-/* What is shown; 0 where the sector is not relit or has no such probe. */
+/* Gives what is shown. Returns 0 where the sector is not relit or has no such probe. */
 DRTV_API int drtv_relit_colours(const drtv_relit* relit,
                                 const drtv_set* set,
                                 drtv_sector_id sector,
                                 uint32_t probe,
                                 float basis_colours[4][3]);
-/* An open sky's; times drtv_sky_factor. */
+/* The colours of an open sky, to be multiplied by drtv_sky_factor. */
 DRTV_API void drtv_relit_fallback(const drtv_relit* relit, float basis_colours[4][3]);
-/* Of all that is relit and of the fallback, for drtv_suggest_scale. */
+/* The largest colour of all relit sectors and of the fallback, for drtv_suggest_scale. */
 DRTV_API float drtv_relit_largest(const drtv_relit* relit, const drtv_set* set);
 
 /* ---- Volumes */
@@ -175,7 +175,7 @@ typedef struct drtv_volume_settings {
 } drtv_volume_settings;
 DRTV_API drtv_volume_settings drtv_default_volume(void);
 
-/* 0 where there is no such volume. */
+/* 0 where a setting is out of range. */
 DRTV_API size_t drtv_volume_bytes(const drtv_volume_settings* settings, const drtv_limits* limits);
 DRTV_API drtv_volume* drtv_volume_make(void* memory,
                                        size_t bytes,
@@ -193,7 +193,7 @@ typedef struct drtv_box {
 /* What the last update wrote. */
 DRTV_API const drtv_box* drtv_volume_dirty(const drtv_volume* volume, size_t* count);
 DRTV_API void drtv_volume_texture_size(const drtv_volume* volume, int32_t size[3]);
-/* Texture k, 0 to 2; NULL for another. */
+/* Texture k, 0 to 2; NULL for any other k. */
 DRTV_API const void* drtv_volume_texels(const drtv_volume* volume, uint32_t k, size_t* bytes);
 
 typedef struct drtv_shader_inputs {
@@ -239,7 +239,7 @@ DRTV_API void drtv_ambient_at(const drtv_set* set,
                               size_t share_count,
                               const drtv_ambient_place* place,
                               drtv_ambient* ambient);
-/* The same from a volume; the place's sampling does not count. */
+/* The same from a volume; the place's sampling is ignored. */
 DRTV_API void drtv_ambient_in(const drtv_volume* volume,
                               const drtv_set* set,
                               const drtv_light* light,

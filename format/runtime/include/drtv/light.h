@@ -3,12 +3,14 @@
 // below "the talk").
 //
 // Radiance in W/(sr m2) and irradiance in W/m2, linear RGB with Rec. 709 primaries; any other unit will do,
-// as long as the map's own lights (static irradiance, which is baked) are in the same. Directions are in the
-// world: z up, any length, towards the light. Nothing here allocates or has state; every call is thread-safe.
+// as long as the map's own lights (static irradiance, which is baked) are in the same unit. Directions are in
+// the world: z up, any length, towards the light. Nothing here allocates or has state; every call is
+// thread-safe.
 //
+//     const drtv::SkyColours colours{.zenith = {2, 4, 9}, .horizon = {5, 6, 8}, .sun_side = {3, 2, 1}};
 //     drtv::SceneLight light;
-//     light.sky = drtv::gradient_sky({.zenith = {2, 4, 9}, .horizon = {5, 6, 8}, .sun_side = {3, 2, 1}},
-//     to_sun); light.sun = {.irradiance = {300, 280, 240}, .direction = to_sun};
+//     light.sky = drtv::gradient_sky(colours, to_sun);
+//     light.sun = {.irradiance = {300, 280, 240}, .direction = to_sun};
 #pragma once
 
 #include <drtv/conventions.h>
@@ -26,11 +28,11 @@ enum class RelightMode : std::uint8_t {
     accurate,  // fitted sun, sky by K, weights that are linear in the normal: exact for light of two bands
 };
 
-// Radiance of a distant light as SH, a vector per channel: [r, g, b][Y0..Y3]. What counts is that the sum of
-// the coefficients times Y is the radiance on the upper hemisphere; what it is below it does not matter.
+// Radiance of a distant light as SH, a vector per channel: [r, g, b][Y0..Y3]. The sum of the coefficients
+// times Y is the radiance on the upper hemisphere; what it is below the horizon does not matter.
 using DistantLight = std::array<Float4, channel_count>;
 
-// Sky of one radiance.
+// A sky of the same radiance everywhere.
 [[nodiscard]] DistantLight constant_sky(const Float3& radiance);
 
 // A sky of three colours: L(w) = horizon + (zenith - horizon) w.z + sun_side (1 + w.s) / 2, where s is the
@@ -40,7 +42,7 @@ struct SkyColours {
     Float3 horizon{};
     Float3 sun_side{};  // added on the side of the sun
 };
-// A sun without a horizontal part, or that is not finite, has no side: s is 0.
+// Where `to_sun` has no horizontal part or is not finite, s is 0.
 [[nodiscard]] DistantLight gradient_sky(const SkyColours& colours, const Float3& to_sun);
 
 // Any other sky: the least squares fit of two bands over the upper hemisphere.
@@ -49,38 +51,39 @@ struct SkySample {
     Float3 radiance{};
     float weight = 1;  // solid angle, in any unit
 };
-// Samples that are not finite do not count. Samples in fewer than four directions leave open what they do not
-// say, with the smallest coefficients; none give a black sky. Cost: some 50 operations per sample.
+// Samples that are not finite do not count. Where samples in fewer than four directions leave the fit open,
+// the one with the smallest coefficients is taken; no samples give a black sky. Cost: some 50 operations per
+// sample.
 [[nodiscard]] DistantLight fit_sky(std::span<const SkySample> samples);
 
-// Radiance towards the unit direction `w`, w.z > 0.
+// The sky's radiance in the unit direction `w`, w.z > 0.
 using SkyRadiance = Float3 (*)(const Float3& w, void* user);
-// Asks 4,096 directions.
+// Calls `radiance` for 4,096 directions.
 [[nodiscard]] DistantLight fit_sky(SkyRadiance radiance, void* user);
 
 struct Sun {
     Float3 irradiance{};           // on a surface that faces it
-    Float3 direction{0, 0, 1.0f};  // towards it; at the horizon, below, or not finite: no sun
+    Float3 direction{0, 0, 1.0f};  // towards the sun; at or below the horizon, or not finite: no sun
 };
-// As the mode has it: `literal` takes E Y(w); `accurate` fits the upper hemisphere, so that the sun's bounce
-// from flat ground is right at every height of the sun.
+// The sun in the form of the mode: `literal` takes E Y(w); `accurate` fits the upper hemisphere, so that the
+// sun's bounce from flat ground is right at every height of the sun.
 [[nodiscard]] DistantLight sun_as_sh(RelightMode mode, const Sun& sun);
 
-// The game's colour for the lights of one group (`light_group` in the map): 1 is as they are in the map. Of
-// several for one group the last counts.
+// The game's colour for the lights of one group (`light_group` in the map): 1 leaves them as they are in the
+// map. If several name one group, the last counts.
 struct GroupColour {
     std::string_view name;
     Float3 colour{1, 1, 1};
 };
 
-// All light of one moment but the game's own lamps.
+// All light of one moment except the game's own lamps.
 struct SceneLight {
     RelightMode mode = RelightMode::accurate;
     DistantLight sky{};
     Sun sun{};
-    Float3 static_colour{1, 1, 1};          // factor of the map's own lights that are in no group
-    std::span<const GroupColour> groups{};  // must stay as long as this is used
-    Float3 other_groups{};                  // factor of groups that are not named above
+    Float3 static_colour{1, 1, 1};          // factor on the map's own lights that are in no group
+    std::span<const GroupColour> groups{};  // must outlive this
+    Float3 other_groups{};                  // factor on groups that are not named above
 };
 
 }  // namespace drtv

@@ -1,8 +1,8 @@
-// The colours of all probes of a set under one light, or on the way from one light to the next: what volumes
-// are filled from. 24 bytes per probe, twice that where a fade is asked for.
+// The colours of all probes of a set under one light, or during a fade from one light to the next. Volumes
+// are filled from them. 24 bytes per probe, twice that with fades.
 //
-// Memory: the caller's, one piece. Threads: sectors may be relit on any number of threads at once, each by
-// one; a volume is filled from them when that is done. `set_light`, `set_fade` and `finish_fade` run alone.
+// Memory: one block of the caller's. Threads: different sectors may be relit on different threads at once; a
+// volume is filled from them after that. `set_light`, `set_fade` and `finish_fade` run alone.
 //
 // Without fades:
 //
@@ -10,8 +10,8 @@
 //     for (const LoadedSector* sector : loaded) relit.relight(Shown::now, *sector, light, lamps);
 //
 // Over frames: set_light(Shown::next, ...) and relight all sectors as Shown::next, some per frame; then
-// set_fade from 0 to 1 over some frames; then finish_fade. What is shown is (1 - s) now + s next, with one s
-// for all. A sector that arrives meanwhile is relit for both.
+// set_fade from 0 to 1 over some frames; then finish_fade. What is shown is (1 - s) now + s next, with the
+// same s for all sectors. Relight a sector that arrives meanwhile for both.
 #pragma once
 
 #include <drtv/local_lights.h>
@@ -37,9 +37,10 @@ class RelitProbes {
     RelitProbes(const RelitProbes&) = delete;
     RelitProbes& operator=(const RelitProbes&) = delete;
 
-    // The light of places without a probe. REQUIRES, here and below: `next` only with fades.
+    // Sets the light of places without a probe. REQUIRES, here and below: `next` only with fades.
     void set_light(Shown shown, const SceneLight& light);
-    // All probes of one sector. Cost: some 10 ns per probe, and per pair of lamp and probe as much.
+    // Relights all probes of one sector. Cost: some 10 ns per probe, and as much for each pair of lamp and
+    // probe.
     void relight(Shown shown,
                  const LoadedSector& sector,
                  const SceneLight& light,
@@ -48,20 +49,20 @@ class RelitProbes {
     // From 0 (now) to 1 (next); above 0 only once all sectors are relit for both.
     void set_fade(float share);
     [[nodiscard]] float fade() const { return fade_; }
-    // What was next is now, and the fade is 0.
+    // Makes `next` the new `now`, and the fade 0.
     void finish_fade();
 
-    // Whether the sector has been relit since it was loaded: before, it shows the fallback.
+    // Whether the sector has been relit since it was loaded; until then it shows the fallback.
     [[nodiscard]] bool is_relit(const LoadedSector& sector) const;
-    // Changes with whatever changes what the sector's probes show, or (without a sector) the fallback.
+    // A number that changes whenever what the sector's probes show changes, or what the fallback shows.
     [[nodiscard]] std::uint64_t stamp(const LoadedSector& sector) const;
     [[nodiscard]] std::uint64_t fallback_stamp() const;
 
     // What is shown. REQUIRES: is_relit(sector), p < sector.view.probe_count.
     [[nodiscard]] BasisColours colours(const LoadedSector& sector, std::size_t p) const;
-    // An open sky's; times a place's sky_factor.
+    // The colours of an open sky, to be multiplied by a place's sky_factor.
     [[nodiscard]] BasisColours fallback() const;
-    // Of the sector's probes, or of the fallback: the largest that is shown, for suggest_scale.
+    // The largest colour that the sector's probes show, or the fallback, for suggest_scale.
     [[nodiscard]] float largest(const LoadedSector& sector) const;
     [[nodiscard]] float largest_fallback() const;
 
@@ -71,7 +72,7 @@ class RelitProbes {
         BasisColours fallback{};
         std::uint64_t stamp = 0;
     };
-    // Of the sector that was relit last, for now and next.
+    // What was relit last in a slot, for now and next.
     struct Relit {
         std::uint64_t load = 0;
         std::uint64_t stamp = 0;

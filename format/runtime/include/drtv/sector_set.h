@@ -1,11 +1,11 @@
-// The sectors that a game has in memory: opened where their files lie, loaded and dropped in any order, asked
-// for the probes that light a place. Any number of cameras and volumes (drtv/volume.h) work over one set.
+// The sectors that a game has in memory: used in place, loaded and dropped in any order, and asked for the
+// probes that light a place. Any number of cameras and volumes (drtv/volume.h) may use one set.
 //
-// Memory: the caller's, one piece, nothing is allocated after that. The files' bytes stay the caller's too,
-// and must stay where they are until `retire` after `drop`.
+// Memory: one block of the caller's; nothing is allocated after that. The files' bytes are the caller's too,
+// and must stay in place until `retire` after `drop`.
 //
 // Threads: const calls may run on any number of threads, beside one thread that loads and drops. `retire`
-// runs alone: a game calls it once per frame, where no other call is under way. What was dropped is gone for
+// runs alone: a game calls it once per frame, while no other call is under way. A dropped sector is gone for
 // the next call, and its bytes may be unmapped after the next `retire`.
 //
 //     std::vector<std::byte> memory(drtv::SectorSet::memory_bytes({}));
@@ -29,9 +29,9 @@ namespace drtv {
 // Memory grows with each: some 600 bytes per sector, 800 per tile, 48 per interior, 1 per probe.
 struct SectorSetLimits {
     std::uint32_t sectors = 64;
-    std::uint32_t probes = 64 * max_probes;  // of all sectors together; each takes a run without gaps
+    std::uint32_t probes = 64 * max_probes;  // of all sectors together; each takes one run without gaps
     std::uint32_t interiors = 256;           // likewise
-    std::uint32_t tiles = 4096;              // kept of sectors that are loaded or were
+    std::uint32_t tiles = 4096;              // kept for sectors that are or were loaded
 };
 
 struct SectorId {
@@ -43,8 +43,8 @@ struct SectorId {
 
 enum class LoadStatus : std::uint8_t {
     loaded,
-    unreadable,     // what open_sector says
-    already_there,  // the set has this sector; one that was dropped counts until `retire`
+    unreadable,     // open_sector refused the file
+    already_there,  // the set has this sector; a dropped one counts until `retire`
     no_room,        // a limit is reached, or no run of free probes is long enough
 };
 
@@ -59,14 +59,14 @@ enum class PlaceStatus : std::uint8_t {
     probe_missing,   // the fallback: the grid names no probe there
 };
 
-// A loaded sector. `first_probe` numbers the probes of all sectors: its probe p is first_probe + p, below
+// A loaded sector. Its probe p has the number first_probe + p among the probes of all sectors, below
 // SectorSetLimits::probes, from load to retire.
 struct LoadedSector {
     SectorView view;
     std::uint32_t slot = 0;  // below SectorSetLimits::sectors
     std::uint32_t first_probe = 0;
     std::uint32_t first_interior = 0;
-    std::uint64_t load = 0;  // counts loads from 1: tells a sector from what had the slot before
+    std::uint64_t load = 0;  // counts loads from 1; earlier sectors of the slot had others
 };
 
 struct ProbeShare {
@@ -75,7 +75,7 @@ struct ProbeShare {
     float share = 0;
 };
 
-// Shares add up to 1 with that of the fallback: an open sky without ground.
+// The shares and that of the fallback, an open sky without ground, add up to 1.
 struct ProbeBlend {
     std::array<ProbeShare, 8> probes{};
     std::size_t count = 0;
@@ -83,16 +83,16 @@ struct ProbeBlend {
     PlaceStatus status = PlaceStatus::sector_missing;
 };
 
-// An interior that holds a place, or nearly.
+// An interior that holds a place, or is near it.
 struct InteriorShare {
     const LoadedSector* sector = nullptr;  // null: none
     std::uint32_t index = 0;               // of sector->view.interiors
-    float share = 0;                       // of its probe; the rest is what lights the place outside
+    float share = 0;                       // of its probe; the rest goes to what lights the place outside
 };
 
 class SectorSet {
   public:
-    // Enough for any piece of memory that starts at a multiple of 16.
+    // Bytes of memory that a set needs. The memory must start at a multiple of 16.
     [[nodiscard]] static std::size_t memory_bytes(const SectorSetLimits& limits);
 
     // REQUIRES: memory.size() >= memory_bytes(limits), it starts at a multiple of 16, and lives as long as
@@ -101,49 +101,51 @@ class SectorSet {
     SectorSet(const SectorSet&) = delete;
     SectorSet& operator=(const SectorSet&) = delete;
 
-    // Opens a raw sector file and makes its tile. `why`, where given, gets what open_sector says, `loaded`
-    // the sector. Cost: the checksum of the file's bytes, some 20 us for 15 KB; and
-    // for each probe within the bounds of an interior as much as one is_inside.
+    // Opens a raw sector file and makes its tile. Where they are given, `why` gets the status of open_sector
+    // and `loaded` the sector. Cost: some 20 us for 15 KB, most of it
+    // for the tile, and one is_inside for each probe within the bounds of an interior.
     LoadStatus load(std::span<const std::uint8_t> file,
                     const LoadedSector** loaded = nullptr,
                     ReadStatus* why = nullptr);
-    // False where it is not there. The tile is kept.
+    // False where the sector is not there. Its tile is kept.
     bool drop(SectorId id);
-    // What was dropped makes room. Alone: no other call may be under way.
+    // Frees the room of dropped sectors. Alone: no other call may be under way.
     void retire();
 
     // Null where it is not loaded.
     [[nodiscard]] const LoadedSector* find(SectorId id) const;
-    // All that are loaded, by slot: null where a slot has none. REQUIRES: slot < limits().sectors.
+    // The sector in a slot; null where the slot has none. REQUIRES: slot < limits().sectors.
     [[nodiscard]] const LoadedSector* at(std::uint32_t slot) const;
     [[nodiscard]] const SectorSetLimits& limits() const { return limits_; }
 
     // The probe that the grid of the place's sector names (slide 54). One share, or the fallback.
     [[nodiscard]] ProbeBlend nearest(const Double3& world_m) const;
-    // Eight cells around the place, continuous across sectors and holes: each column between its own two
-    // cells, then the four columns.
+    // Blends the eight cells around the place, continuously across sectors and holes: first the two cells of
+    // each column, then the four columns.
     [[nodiscard]] ProbeBlend trilinear(const Double3& world_m) const;
 
-    // The interior with the largest share, at a distance of d inside its mesh (below 0 outside) and a
-    // softness above 0: clamp(1/2 + d / soft, 0, 1). Ties go to the place's own sector, then to the nearest
-    // (by its centre, j, i), then to the first in the file. With a softness of 0, inside is 1 and outside 0.
+    // The interior with the largest share. The share is clamp(1/2 + d / soft_m, 0, 1), where d is the
+    // distance to its mesh in metres, below 0 outside; with a softness of 0 it is 1 inside and 0 outside.
+    // Ties go to the place's own sector, then to the nearest sector (by its centre, j, i), then to the first
+    // in the file.
     [[nodiscard]] InteriorShare interior(const Double3& world_m, float soft_m = 1) const;
 
-    // What each probe of a sector is outdoors. One that stands inside an interior of its sector, or that such
-    // a one names, does not light what is outside: the probe that stands nearest to it and is none of them
-    // does (ties go to the first). All others, and all where each is one, stand for themselves. REQUIRES,
-    // also below: sectors of this set.
+    // For each probe of a sector, the probe that stands for it outdoors. A probe that is inside an interior
+    // of its sector, or that such an interior names, does not light what is outside: the nearest probe that
+    // is not indoors in this way does (ties go to the first). All others stand for themselves, and so do all
+    // where every probe is indoors. REQUIRES, also below: sectors of this set.
     [[nodiscard]] std::span<const std::uint8_t> outdoor_probes(const LoadedSector& sector) const {
         return outdoor_probes_.subspan(sector.first_probe, sector.view.probe_count);
     }
-    // A blend with these: what lights a place that is in no interior.
+    // A blend with these probes: what lights a place that is in no interior.
     [[nodiscard]] ProbeBlend outdoors(const ProbeBlend& blend) const;
 
-    // What is left of the open sky's ambient light (drtv/sky_tile.h), between the four nearest columns. Of
-    // sectors without a tile: 1.
+    // What is left of the open sky's ambient light (drtv/sky_tile.h), 0 to 1, blended from the four nearest
+    // columns; 1 in sectors without a tile.
     [[nodiscard]] float sky_factor(const Double3& world_m) const;
 
-    // Tiles of a file (open_tiles), for sectors whose own is not known; they must stay where they are. Alone.
+    // Sets the tiles of a file (open_tiles), for sectors whose own tile is not known. They must stay in
+    // place. Alone.
     void use_tiles(std::span<const SkyTile> tiles) { file_tiles_ = tiles; }
     // Null where none is known.
     [[nodiscard]] const SkyTile* tile(SectorId id) const;
@@ -177,8 +179,8 @@ class SectorSet {
 };
 
 // The sectors whose squares lie within `radius_m` of a camera, seen from above, nearest first, ties by (j,
-// i): as many as there is room for. Gives how many it wrote. A camera that is not finite wants none; where a
-// file can lie, SPEC.md says. Slide 24 of the talk: 51 sectors.
+// i): as many as there is room for. Returns how many it wrote: none for a camera that is not finite. Leaves
+// out sectors that no file can be for (SPEC.md, section 4.1). The talk has 51 sectors (slide 24).
 [[nodiscard]] std::size_t wanted_sectors(const Double3& camera_m, double radius_m, std::span<SectorId> out);
 
 }  // namespace drtv

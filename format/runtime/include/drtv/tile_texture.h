@@ -1,7 +1,7 @@
 // Tiles of many sectors in one texture, for shaders (slides 57 and 58 of the talk, see drtv/light.h): a
 // square of n x n sectors that wraps, so that a camera may move anywhere; sector (i, j) has the 16 x 16
-// texels from 16 (i mod n), 16 (j mod n) on. A texel is two floats (RG32F): visibility, 0 to 1, and the
-// height in metres above which a column begins to darken less. What the shader does with it: drtv_sky_factor.
+// texels that begin at (16 (i mod n), 16 (j mod n)). A texel is two floats (RG32F): visibility, 0 to 1, and
+// the height in metres above which a column begins to darken less. The shader's drtv_sky_factor reads them.
 //
 // Pure functions, thread-safe, no allocation. Cost: a microsecond per sector.
 //
@@ -26,13 +26,15 @@ struct TileShaderInputs {
     float camera_z = 0;             // metres
 };
 
-// `snapped_camera`: VolumeShaderInputs's. REQUIRES: sectors >= 1; a camera in the world.
+// `sectors` is n; `snapped_camera` is that of VolumeShaderInputs. REQUIRES: sectors >= 1; a camera in the
+// world.
 [[nodiscard]] TileShaderInputs tile_shader_inputs(std::uint32_t sectors, const Double3& snapped_camera);
 
 // Where the sector's texels begin, x and y.
 [[nodiscard]] std::array<std::uint32_t, 2> tile_texel(std::uint32_t sectors, SectorId id);
 
-// Writes them. A sector without a tile (null) is open. REQUIRES: texels.size() == (16 sectors)^2.
+// Writes the sector's texels. A sector without a tile (null) is open.
+// REQUIRES: texels.size() == (16 sectors)^2.
 void write_tile_texels(const SkyTile* tile,
                        SectorId id,
                        std::uint32_t sectors,

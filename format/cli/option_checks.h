@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace drtv::kit {
+namespace drtv::cli {
 
 // "a, b, c"
 [[nodiscard]] std::string joined(const std::vector<std::string>& words);
@@ -18,5 +18,7 @@ namespace drtv::kit {
 // Above 0 and below `max`.
 [[nodiscard]] CLI::Validator number_below(double max);
 [[nodiscard]] CLI::Validator finite_number();
+// Above 0.
+[[nodiscard]] CLI::Validator positive_number();
 
-}  // namespace drtv::kit
+}  // namespace drtv::cli

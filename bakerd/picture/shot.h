@@ -16,10 +16,10 @@
 
 namespace drtv::picture {
 
-class Setting {
+class Shot {
   public:
     // Fails with a sentence where something does not fit together.
-    [[nodiscard]] static Expected<std::unique_ptr<const Setting>> open(const RenderRequest& request);
+    [[nodiscard]] static cli::Result<std::unique_ptr<const Shot>> open(const RenderRequest& request);
 
     [[nodiscard]] const SectorSet& sectors() const { return folder_->set(); }
     [[nodiscard]] const Scenery& scenery() const { return *scenery_; }
@@ -33,24 +33,25 @@ class Setting {
     // Where the rule chose it.
     [[nodiscard]] const std::optional<View>& view() const { return view_; }
     // What is seen from above.
-    [[nodiscard]] const Rectangle& world() const { return world_; }
+    [[nodiscard]] const trace::WorldRectangle& world() const { return world_; }
 
   private:
-    explicit Setting(const RenderRequest& request) : request_(request) {}
-    [[nodiscard]] Expected<void> read_choices();
-    [[nodiscard]] Expected<void> read_bake_settings();
-    [[nodiscard]] Expected<void> load_sectors(const Rectangle& wanted, const Rectangle& map);
-    [[nodiscard]] Expected<void> load_around(const Rectangle& wanted);
-    [[nodiscard]] Rectangle wanted_of(const map::Bounds& bounds) const;
-    [[nodiscard]] Expected<void> place_camera(const map::Bounds& bounds);
-    [[nodiscard]] Expected<void> check_camera() const;
-    [[nodiscard]] Expected<void> check_map() const;
+    explicit Shot(const RenderRequest& request) : request_(request) {}
+    [[nodiscard]] cli::Result<void> read_choices();
+    [[nodiscard]] cli::Result<void> read_bake_settings();
+    [[nodiscard]] cli::Result<void> load_sectors(const trace::WorldRectangle& wanted,
+                                                 const trace::WorldRectangle& map);
+    [[nodiscard]] cli::Result<void> load_around(const trace::WorldRectangle& wanted);
+    [[nodiscard]] trace::WorldRectangle wanted_of(const map::Bounds& bounds) const;
+    [[nodiscard]] cli::Result<void> place_camera(const map::Bounds& bounds);
+    [[nodiscard]] cli::Result<void> check_camera() const;
+    [[nodiscard]] cli::Result<void> check_map() const;
 
     const RenderRequest& request_;
     Size size_;
     // On the command line.
     std::optional<View> asked_;
-    std::optional<Rectangle> region_;
+    std::optional<trace::WorldRectangle> region_;
     Show show_ = Show::all;
     RelightChoice choice_;
     std::unique_ptr<kit::SectorFolder> folder_;
@@ -58,7 +59,7 @@ class Setting {
     std::unique_ptr<const Scenery> scenery_;
     std::optional<Camera> camera_;
     std::optional<View> view_;
-    Rectangle world_;
+    trace::WorldRectangle world_;
 };
 
 }  // namespace drtv::picture

@@ -1,9 +1,10 @@
-#include "bakerd/picture/setting.h"
+#include "bakerd/picture/shot.h"
 
 #include "bakerd/picture/ground_probes.h"
 #include "bakerd/picture/rectangle.h"
 #include "bakerd/picture/view_arguments.h"
 #include "bakerd/trace/device.h"
+#include "format/cli/report.h"
 #include "format/kit/files.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ constexpr float sectors_m = 2048;
 constexpr float over_the_top_m = 1;
 
 // The picture's shape around a part of the world.
-Rectangle widened(const Rectangle& world, Size size) {
+trace::WorldRectangle widened(const trace::WorldRectangle& world, Size size) {
     const glm::vec2 middle = (world.low + world.high) / 2.0f;
     glm::vec2 half = (world.high - world.low) / 2.0f;
     const float shape = static_cast<float>(size.width) / static_cast<float>(size.height);
@@ -31,37 +32,37 @@ Rectangle widened(const Rectangle& world, Size size) {
 
 }  // namespace
 
-Expected<std::unique_ptr<const Setting>> Setting::open(const RenderRequest& request) {
-    std::unique_ptr<Setting> setting(new Setting(request));
-    if (auto done = setting->read_choices(); !done)
+cli::Result<std::unique_ptr<const Shot>> Shot::open(const RenderRequest& request) {
+    std::unique_ptr<Shot> shot(new Shot(request));
+    if (auto done = shot->read_choices(); !done)
         return tl::unexpected(done.error());
-    if (!kit::sector_files(request.folder))
-        return failed(kit::exit_unreadable, {});  // has been told
+    if (const auto files = kit::sector_files(request.folder); !files)
+        return tl::unexpected(files.error());
     auto map = read_map(request.maps);
     if (!map)
         return tl::unexpected(map.error());
     const map::Bounds bounds = bounds_of(**map);
     if (bounds.empty())
-        return failed(kit::exit_invalid, "the map has nothing that could be seen");
-    const Rectangle wanted = setting->wanted_of(bounds);
-    if (auto done = setting->load_sectors(wanted, {bounds.low, bounds.high}); !done)
+        return cli::fail(cli::exit_invalid, "the map has nothing that could be seen");
+    const trace::WorldRectangle wanted = shot->wanted_of(bounds);
+    if (auto done = shot->load_sectors(wanted, {bounds.low, bounds.high}); !done)
         return tl::unexpected(done.error());
     if (request.compare) {
-        if (auto done = setting->read_bake_settings(); !done)
+        if (auto done = shot->read_bake_settings(); !done)
             return tl::unexpected(done.error());
     }
     auto scenery = Scenery::build(*map, (wanted.low + wanted.high) / 2.0f);
     if (!scenery)
         return tl::unexpected(scenery.error());
-    setting->scenery_ = std::move(*scenery);
-    if (auto done = setting->place_camera(bounds); !done)
+    shot->scenery_ = std::move(*scenery);
+    if (auto done = shot->place_camera(bounds); !done)
         return tl::unexpected(done.error());
-    if (auto done = setting->check_map(); !done)
+    if (auto done = shot->check_map(); !done)
         return tl::unexpected(done.error());
-    return setting;
+    return shot;
 }
 
-Expected<void> Setting::read_choices() {
+cli::Result<void> Shot::read_choices() {
     const auto size = read_size(request_.size);
     if (!size)
         return tl::unexpected(size.error());
@@ -81,20 +82,20 @@ Expected<void> Setting::read_choices() {
     choice_.encoding = kit::encoding_of(encoding);
     choice_.interiors = request_.interiors;
     if (request_.compare && !is_surface_light(show_))
-        return failed(
-            kit::exit_usage,
+        return cli::fail(
+            cli::exit_usage,
             fmt::format("render: --compare goes with light, all or a part of it, not with --show {}",
                         request_.show));
     const bool needs_volume = show_ == Show::clipped || show_ == Show::age;
     if (choice_.by != By::volume && (needs_volume || request_.encoding))
-        return failed(kit::exit_usage,
-                      fmt::format("render: {} goes with --by volume",
-                                  needs_volume ? "--show " + request_.show : "--encoding"));
+        return cli::fail(cli::exit_usage,
+                         fmt::format("render: {} goes with --by volume",
+                                     needs_volume ? "--show " + request_.show : "--encoding"));
     return {};
 }
 
 // Around a place where there are sectors: a map may be baked in a corner only.
-Rectangle Setting::wanted_of(const map::Bounds& bounds) const {
+trace::WorldRectangle Shot::wanted_of(const map::Bounds& bounds) const {
     if (asked_)
         return {glm::vec2(asked_->eye), glm::vec2(asked_->eye)};
     if (region_)
@@ -108,17 +109,14 @@ Rectangle Setting::wanted_of(const map::Bounds& bounds) const {
     return {around, around};
 }
 
-Expected<void> Setting::load_around(const Rectangle& wanted) {
+cli::Result<void> Shot::load_around(const trace::WorldRectangle& wanted) {
     const glm::dvec2 low(wanted.low - sectors_m);
     const glm::dvec2 high(wanted.high + sectors_m);
     folder_ = std::make_unique<kit::SectorFolder>();
-    const int code = folder_->load(request_.folder, kit::WorldSquare{low.x, low.y, high.x, high.y});
-    if (code != kit::exit_valid)
-        return failed(static_cast<kit::ExitCode>(code), {});  // and has been told
-    return {};
+    return folder_->load(request_.folder, kit::WorldSquare{low.x, low.y, high.x, high.y});
 }
 
-Expected<void> Setting::load_sectors(const Rectangle& wanted, const Rectangle& map) {
+cli::Result<void> Shot::load_sectors(const trace::WorldRectangle& wanted, const trace::WorldRectangle& map) {
     if (auto done = load_around(wanted); !done)
         return done;
     std::size_t count = 0;
@@ -135,16 +133,16 @@ Expected<void> Setting::load_sectors(const Rectangle& wanted, const Rectangle& m
                                           map.low.y,
                                           map.high.y);
     if (count == 0)
-        return failed(kit::exit_invalid,
-                      fmt::format("{} has no sector within {} m of x {:.0f}, y {:.0f}; {}",
-                                  request_.folder,
-                                  sectors_m,
-                                  (wanted.low.x + wanted.high.x) / 2,
-                                  (wanted.low.y + wanted.high.y) / 2,
-                                  where));
-    const Rectangle sectors = extent_of(folder_->set());
-    return failed(
-        kit::exit_invalid,
+        return cli::fail(cli::exit_invalid,
+                         fmt::format("{} has no sector within {} m of x {:.0f}, y {:.0f}; {}",
+                                     request_.folder,
+                                     sectors_m,
+                                     (wanted.low.x + wanted.high.x) / 2,
+                                     (wanted.low.y + wanted.high.y) / 2,
+                                     where));
+    const trace::WorldRectangle sectors = extent_of(folder_->set());
+    return cli::fail(
+        cli::exit_invalid,
         fmt::format("the sectors of {} lie at x {:.0f} to {:.0f}, y {:.0f} to {:.0f}, but {}: they are "
                     "of another map",
                     request_.folder,
@@ -156,12 +154,13 @@ Expected<void> Setting::load_sectors(const Rectangle& wanted, const Rectangle& m
 }
 
 // Of the first file: a folder is one bake.
-Expected<void> Setting::read_bake_settings() {
+cli::Result<void> Shot::read_bake_settings() {
     const auto files = kit::sector_files(request_.folder);
-    int code = kit::exit_unreadable;
-    const auto sector = files ? kit::load_sector(files->front(), code) : std::nullopt;
+    if (!files)
+        return tl::unexpected(files.error());
+    const auto sector = kit::load_sector(files->front());
     if (!sector)
-        return failed(static_cast<kit::ExitCode>(code), {});
+        return tl::unexpected(sector.error());
     bake_.bounces = sector->bake.bounces;
     if (sector->convergence && sector->convergence->local_bounces > 0)
         bake_.local_bounces = sector->convergence->local_bounces;
@@ -169,7 +168,7 @@ Expected<void> Setting::read_bake_settings() {
     return {};
 }
 
-Expected<void> Setting::place_camera(const map::Bounds& bounds) {
+cli::Result<void> Shot::place_camera(const map::Bounds& bounds) {
     if (request_.top) {
         world_ = widened(region_ ? *region_ : extent_of(folder_->set()), size_);
         camera_ = Camera::above(world_, bounds.high.z + over_the_top_m, size_);
@@ -184,30 +183,31 @@ Expected<void> Setting::place_camera(const map::Bounds& bounds) {
         view = view_;
         // Those that the same view would load on the command line.
         const glm::vec2 eye = view ? glm::vec2(view->eye) : glm::vec2(0);
-        if (auto done = view ? load_around({eye, eye}) : Expected<void>(); !done)
+        if (auto done = view ? load_around({eye, eye}) : cli::Result<void>(); !done)
             return done;
     }
     if (!view)
-        return failed(kit::exit_invalid,
-                      "no probe of the files sees anything of the map; --camera and --look say what to show");
+        return cli::fail(
+            cli::exit_invalid,
+            "no probe of the files sees anything of the map; --camera and --look say what to show");
     camera_ = Camera::at(view->eye, view->look, request_.fov_deg, size_);
-    return asked_ ? check_camera() : Expected<void>();
+    return asked_ ? check_camera() : cli::Result<void>();
 }
 
 // Where a camera stands in something there is nothing to see.
-Expected<void> Setting::check_camera() const {
+cli::Result<void> Shot::check_camera() const {
     const trace::FloatMode float_mode;
     const trace::Scene& scene = scenery_->scene();
     const glm::vec3& eye = camera_->eye();
     if (const auto object = scene.closed_around(eye))
-        return failed(kit::exit_invalid,
-                      fmt::format("the camera at {} stands inside of '{}'",
-                                  place_text(eye),
-                                  scenery_->map().objects[scene.object_index(*object)].name));
+        return cli::fail(cli::exit_invalid,
+                         fmt::format("the camera at {} stands inside of '{}'",
+                                     place_text(eye),
+                                     scenery_->map().objects[scene.object_index(*object)].name));
     const std::optional<trace::Hit> above = scene.closest({eye, {0, 0, 1}, sight_m});
     if (above && scene.surface(*above, 1).absorbs)
-        return failed(
-            kit::exit_invalid,
+        return cli::fail(
+            cli::exit_invalid,
             fmt::format("the camera at {} stands under the ground: {:.1f} m above it is the back of '{}'",
                         place_text(eye),
                         above->distance_m,
@@ -216,13 +216,13 @@ Expected<void> Setting::check_camera() const {
 }
 
 // Probes stand over ground: where there is none, it is another map, or not all of it.
-Expected<void> Setting::check_map() const {
+cli::Result<void> Shot::check_map() const {
     const trace::FloatMode float_mode;
     constexpr float ground_m = 1.5f;
-    constexpr std::size_t most_asked = 256;
+    constexpr std::size_t max_asked = 256;
     std::vector<glm::vec3> probes;
     for_each_ground_probe(folder_->set(), [&](const glm::vec3& place) { probes.push_back(place); });
-    const std::size_t step = probes.size() / most_asked + 1;
+    const std::size_t step = probes.size() / max_asked + 1;
     std::size_t asked = 0, over_nothing = 0;
     for (std::size_t n = 0; n < probes.size(); n += step) {
         ++asked;
@@ -233,8 +233,8 @@ Expected<void> Setting::check_map() const {
     const std::string sentence = fmt::format(
         "{} of {} probes of {} stand over no ground of the map", over_nothing, asked, request_.folder);
     if (over_nothing == asked)
-        return failed(kit::exit_invalid, sentence + ": they are of another map");
-    kit::complain("warning: " + sentence + ": is it the one that they were baked of?");
+        return cli::fail(cli::exit_invalid, sentence + ": they are of another map");
+    cli::warn(sentence + ": is it the one that they were baked of?");
     return {};
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace drtv::kit {
+namespace drtv::cli {
 
 std::string joined(const std::vector<std::string>& words) {
     return CLI::detail::join(words, ", ");
@@ -59,4 +59,14 @@ CLI::Validator finite_number() {
     return {check, ""};
 }
 
-}  // namespace drtv::kit
+CLI::Validator positive_number() {
+    const auto check = [](const std::string& text) {
+        double number = 0;
+        if (CLI::detail::lexical_cast(text, number) && std::isfinite(number) && number > 0)
+            return std::string();
+        return "takes a number above 0, not \"" + text + "\"";
+    };
+    return {check, ""};
+}
+
+}  // namespace drtv::cli

@@ -1,0 +1,35 @@
+#include "client/job_end.h"
+
+#include "client/job_text.h"
+#include "client/number_text.h"
+
+#include <fmt/format.h>
+#include <grpcpp/grpcpp.h>
+
+namespace drtv::client {
+
+cli::Result<v1::Job> get_job(ServerConnection& connection, const std::string& job) {
+    v1::GetJobRequest request;
+    request.set_name(job_resource(job));
+    grpc::ClientContext context;
+    v1::Job found;
+    if (const grpc::Status status = connection.jobs->GetJob(&context, request, &found); !status.ok())
+        return tl::unexpected(connection.failure(status));
+    return found;
+}
+
+cli::Result<cli::ExitCode> end_of(const v1::Job& job) {
+    if (job.state() == v1::Job::SUCCEEDED)
+        return cli::exit_done;
+    if (job.state() == v1::Job::FAILED)
+        return cli::fail(cli::exit_job_failed, job.error());
+    const bool cancelled = job.state() == v1::Job::CANCELLED;
+    return cli::fail(cli::exit_unfinished,
+                     fmt::format("job {} {}: {} of {} sectors are done",
+                                 job_number(job),
+                                 cancelled ? "was cancelled" : "is not finished",
+                                 with_thousands(job.sectors_done()),
+                                 with_thousands(job.sectors_total())));
+}
+
+}  // namespace drtv::client
