@@ -122,7 +122,11 @@ void add_worker(CLI::App& app, Arguments& to) {
     command->add_option("--threads", to.worker.threads, "Threads to bake with; 0: all")
         ->check(cli::whole_number(0, 1024));
     command->callback([&to] {
-        to.run = [&to] { return cli::fail(cli::exit_unreadable, worker::run_worker(to.worker).value()); };
+        to.run = [&to]() -> cli::Result<cli::ExitCode> {
+            if (auto ran = worker::run_worker(to.worker); !ran)
+                return cli::fail(cli::exit_unreadable, ran.error());
+            return cli::exit_done;
+        };
     });
 }
 

@@ -53,13 +53,17 @@ cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
         pulled = pull.pull();
     };
     const auto watched = run_watch(connection, job, options.timeout_s, pull_new);
-    if (watched == cli::exit_interrupted)
+    if (!watched && watched.error().code == cli::exit_interrupted)
         return watched;
     if (pulled)
         pulled = pull.pull();
-    if (!pulled)
+    if (pulled)
+        pull.report();
+    // How the job ended says more than what became of its files.
+    if (!watched && !pulled)
+        cli::warn(pulled.error().sentence);
+    if (watched && !pulled)
         return tl::unexpected(pulled.error());
-    pull.report();
     return watched;
 }
 
@@ -77,9 +81,15 @@ cli::Result<cli::ExitCode> run_submit(ServerConnection& connection, const Submit
     if (const grpc::Status status = connection.jobs->CreateJob(&context, request, &created); !status.ok())
         return tl::unexpected(connection.failure(status));
 
-    if (created.sectors_total() == 0)
-        return cli::fail(cli::exit_invalid, "the map has no ground, so there is nothing to bake");
     const std::string number = job_number(created);
+    if (!created.settings().has_rays()) {
+        return cli::fail(
+            cli::exit_server,
+            fmt::format("bakerd at {} is of another version than this bake: it does not say with which "
+                        "settings it bakes job {}",
+                        connection.options.server,
+                        number));
+    }
     if (!options.pull_folder.empty())
         return watch_and_pull(connection, number, options);
     if (options.wait)

@@ -116,12 +116,13 @@ cli::Result<cli::ExitCode> run_watch(ServerConnection& connection,
         const grpc::Status status = follow(connection, name, progress, progressed, deadline, job);
         progress.clear();
         if (interrupted()) {
-            cli::note(fmt::format("job {} goes on without this client; {}", number, come_back));
-            return cli::exit_interrupted;
+            return cli::fail(cli::exit_interrupted,
+                             fmt::format("job {} goes on without this client; {}", number, come_back));
         }
         if (has_ended(job))
             break;
-        if (deadline && std::chrono::system_clock::now() >= *deadline) {
+        if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED ||
+            (deadline && std::chrono::system_clock::now() >= *deadline)) {
             return cli::fail(
                 cli::exit_timeout,
                 fmt::format(

@@ -42,8 +42,9 @@ cli::Result<Credentials> credentials(const ConnectionOptions& options) {
 
 cli::Failure ServerConnection::failure(const grpc::Status& status, cli::ExitCode invalid) const {
     // What bakerd says itself has details; all else comes from the way to it.
-    const std::string details = status.error_details();
-    const bool from_server = !details.empty() && v1::ErrorDetails().ParseFromString(details);
+    v1::ErrorDetails details;
+    const bool from_server =
+        details.ParseFromString(status.error_details()) && !details.server_version().empty();
     if (!from_server && status.error_code() == grpc::StatusCode::UNAVAILABLE)
         return {cli::exit_server, fmt::format("cannot reach bakerd at {}: is it running?", options.server)};
     if (!from_server) {

@@ -110,6 +110,8 @@ cli::Result<v1::Job> prepare_job(ServerConnection& connection, const SubmitOptio
     const auto map = upload_map(connection, *local);
     if (!map)
         return tl::unexpected(map.error());
+    if (map->sector_count() == 0)
+        return cli::fail(cli::exit_invalid, "the map has no ground, so there is nothing to bake");
     for (const std::string& warning : map->warnings())
         cli::warn(warning);
     job->set_map(map->name());

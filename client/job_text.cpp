@@ -24,8 +24,10 @@ void add_settings(const Job& job, Json& json) {
         return;
     for (const settings::Setting& setting : settings::table()) {
         const double value = settings::value_of(*settings, setting);
-        if (value != settings::value_of(*preset, setting))
-            json["set"][std::string(setting.name)] = value;
+        if (value == settings::value_of(*preset, setting))
+            continue;
+        // As people write it: 0.001, not the double of that float.
+        json["set"][std::string(setting.name)] = Json::parse(settings::text_of(value));
     }
 }
 

@@ -47,7 +47,7 @@ void add_timeout(CLI::App& command, SubmitOptions& submit) {
         .add_option("--timeout",
                     submit.timeout_s,
                     "Seconds to wait for the job's end; then the exit status is 8, and the job goes on")
-        ->check(cli::positive_number());
+        ->check(cli::number_below(1e8));
 }
 
 void add_map_options(CLI::App& command, SubmitOptions& submit) {
@@ -74,6 +74,8 @@ void add_map_commands(CLI::App& app, Arguments& to) {
     submit->add_option("--pull", to.submit.pull_folder, "Wait, then write the sector files to this folder");
     add_timeout(*submit, to.submit);
     submit->callback([&to] {
+        if (to.submit.timeout_s > 0 && !to.submit.wait && to.submit.pull_folder.empty())
+            throw CLI::ValidationError("--timeout", "goes with --wait or --pull");
         to.run = [&to](ServerConnection& connection) { return run_submit(connection, to.submit); };
     });
     plan->callback([&to] {

@@ -118,7 +118,8 @@ cli::Result<void> upload_file(ServerConnection& connection, const LocalFile& fil
     }
     if (interrupted())
         return cli::fail(cli::exit_interrupted, "interrupted; what was uploaded stays with the server");
-    const cli::Failure failure = connection.failure(status);
+    // It changed while it was uploaded.
+    const cli::Failure failure = connection.failure(status, cli::exit_unreadable);
     return cli::fail(failure.code, fmt::format("cannot upload {}: {}", file.disk_path, failure.sentence));
 }
 

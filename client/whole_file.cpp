@@ -23,7 +23,7 @@ int write_all(int fd, std::string_view bytes) {
             return n < 0 ? errno : EIO;
         bytes.remove_prefix(static_cast<std::size_t>(n));
     }
-    return cli::exit_done;
+    return 0;
 }
 
 // 0, or what went wrong; then no file is left.

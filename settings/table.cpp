@@ -23,9 +23,8 @@ constexpr std::array settings_table = {
             1,
             "",
             {0, 0, 0},
-            "standard error at which a probe stops early, after 1,024 rays or more, with `rays` as its "
-            "budget; 0.01 is "
-            "1 % of its relit irradiance, 0 traces all rays"},
+            "a probe stops once its standard error is this part of its relit irradiance (0.01: 1 %), not "
+            "before 1,024 rays and never beyond `rays`; 0 always traces all"},
     Setting{"lprt",
             &Bake::local_transfer,
             0,
@@ -49,9 +48,8 @@ constexpr std::array settings_table = {
             0.0625,
             "",
             {1 / 512.0, 1 / 512.0, 1 / 512.0},
-            "how far off an older result that stands in for a new one may be, as a share of a coefficient's "
-            "range; "
-            "0: not at all"},
+            "largest error allowed where an earlier result is reused, as a part of a coefficient's range; 0 "
+            "allows none. With lprt there is no such reuse"},
 };
 
 template <class Number>
@@ -107,11 +105,12 @@ tl::expected<double, std::string> parse(const Setting& setting, std::string_view
 tl::expected<void, std::string> check(const Setting& setting, double value) {
     if (value >= setting.min && value <= setting.max && (!is_integer(setting) || value == std::trunc(value)))
         return {};
+    const std::string shown = is_integer(setting) ? fmt::format("{}", value) : text_of(value);
     return tl::unexpected(fmt::format("{} must be a number from {} to {}, not {}",
                                       setting.name,
                                       text_of(setting.min),
                                       text_of(setting.max),
-                                      text_of(value)));
+                                      shown));
 }
 
 void assign(JobSettings& settings, const Setting& setting, double value) {

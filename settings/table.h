@@ -1,5 +1,5 @@
-// The one table of settings. The command line, its help, error sentences, messages, the database's columns,
-// the key of results and the documentation's table follow from it.
+// The one table of settings. The command line, its help, error sentences, the database's columns and the key
+// of results follow from it; the contract and README are tested against it.
 #pragma once
 
 #include "settings/bake_settings.h"

@@ -7,7 +7,6 @@ forbidden and checks that each is found; `--readme` prints README's last column.
 """
 import os
 import re
-import subprocess
 import sys
 import tempfile
 
@@ -75,6 +74,7 @@ NAMESPACES = {
 }
 del NAMESPACES["runtime"], NAMESPACES["light"]  # theirs is drtv, as format's
 
+SOURCES = (".h", ".cpp", ".c", ".py", ".proto", ".shader", ".sh")
 FORBIDDEN_NAMES = {"util", "utils", "common", "core", "helper", "helpers", "manager"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]', re.MULTILINE)
 TYPE = re.compile(r"^(?:struct|class|enum class|union) (\w+)(?![\w:]| \w)[^;\n]*(?:\{|$)", re.MULTILINE)
@@ -98,9 +98,10 @@ def room_of(path):
     return best
 
 
-def files_below(root, endings):
-    for top in sorted({name.split("/")[0] for name in ROOMS}):
-        for folder, _, names in os.walk(os.path.join(root, top)):
+def files_below(root, endings, tops=tuple(sorted({name.split("/")[0] for name in ROOMS}))):
+    for top in tops:
+        for folder, folders, names in os.walk(os.path.join(root, top)):
+            folders[:] = [name for name in folders if name != "node_modules"]
             for name in sorted(names):
                 if name.endswith(endings):
                     yield os.path.relpath(os.path.join(folder, name), root)
@@ -109,11 +110,6 @@ def files_below(root, endings):
 def read(root, path):
     with open(os.path.join(root, path), encoding="utf-8") as file:
         return file.read()
-
-
-def tracked_files(root):
-    listed = subprocess.run(["git", "-C", root, "ls-files"], check=True, capture_output=True, text=True)
-    return [path for path in listed.stdout.splitlines() if os.path.exists(os.path.join(root, path))]
 
 
 def without_comments_and_texts(code):
@@ -243,7 +239,10 @@ def check_licences(root):
         path = os.path.join(folder, "LICENSE")
         if not re.search(said[licence], read(root, path)):
             yield f"{path} is not the {licence}'s"
-    for path in tracked_files(root):
+    for path in [
+        *files_below(root, SOURCES),
+        *files_below(root, SOURCES, ("examples", "tests", "deploy", "docs")),
+    ]:
         licence = "MIT" if path.split("/")[0] in MIT_FOLDERS else "GPL"
         other = "GPL" if licence == "MIT" else "MIT"
         if (

@@ -41,7 +41,7 @@ struct ErrorOfMean {
     double error = 0;  // standard error, root mean square over the numbers
     double mean = 0;   // over the numbers
 
-    // Over the mean or `least_mean`.
+    // Over the mean or `min_mean`.
     [[nodiscard]] double over_mean() const { return error / (mean > min_mean ? mean : min_mean); }
     // Over the mean; 0 where that is none.
     [[nodiscard]] double on_own_scale() const { return mean > 0 ? error / mean : 0; }

@@ -29,8 +29,8 @@ CheckResult check_uri(Json& element,
     std::optional<std::string> path = decode_uri(uri);
     if (!path || !is_utf8(*path))
         return wrong("{}: the uri {} is not valid", where, shown(uri));
-    if (const auto problem = path_problem(*path))
-        return wrong("{}: {}", where, *problem);
+    if (const auto checked = check_path(*path); !checked)
+        return wrong("{}: {}", where, checked.error());
     element["uri"] = std::to_string(outside.size());
     element["name"] = *path;
     outside.push_back({where, std::move(path), size_bytes});

@@ -66,13 +66,14 @@ std::size_t digits_for(std::size_t size_bytes) {
 
 }  // namespace
 
-std::optional<std::string> path_problem(const std::string& path) {
+tl::expected<void, std::string> check_path(const std::string& path) {
     if (is_absolute(path))
-        return fmt::format("the path '{}' is absolute, it must lie in the map's folder", path);
+        return tl::unexpected(
+            fmt::format("the path '{}' is absolute, it must lie in the map's folder", path));
     if (!is_valid(path))
-        return fmt::format("the path '{}' is not valid", path);
+        return tl::unexpected(fmt::format("the path '{}' is not valid", path));
     if (leaves_folder(path))
-        return fmt::format("the path '{}' leaves the map's folder", path);
+        return tl::unexpected(fmt::format("the path '{}' leaves the map's folder", path));
     return {};
 }
 

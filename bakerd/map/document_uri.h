@@ -12,9 +12,9 @@ namespace drtv::map {
 
 using SizeBytes = std::optional<std::size_t>;
 
-// What is wrong with a path that must name a file in the map's folder or below: "the path '../x' leaves the
-// map's folder"; nothing when it is fine.
-[[nodiscard]] std::optional<std::string> path_problem(const std::string& path);
+// Fails for a path that does not name a file in the map's folder or below: "the path '../x' leaves the map's
+// folder".
+[[nodiscard]] tl::expected<void, std::string> check_path(const std::string& path);
 
 // The uri with its %xx decoded; nothing when one of them is not two hexadecimal digits.
 [[nodiscard]] std::optional<std::string> decode_uri(const std::string& uri);

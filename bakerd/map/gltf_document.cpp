@@ -162,8 +162,8 @@ tl::expected<GltfDocument, std::string> load_document(const std::string& path, c
     GltfDocument document;
     document.path = path;
     const auto fail = [&](const std::string& rest) { return tl::unexpected(document.at(rest)); };
-    if (const auto problem = path_problem(path))
-        return fail(*problem);
+    if (const auto checked = check_path(path); !checked)
+        return fail(checked.error());
     const auto bytes = files(path);
     if (!bytes)
         return tl::unexpected(bytes.error());

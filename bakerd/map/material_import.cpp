@@ -19,7 +19,7 @@ bool lies_in(double value, double low, double high) {
 }
 
 // What is there of the base texture.
-CoverageTest presence_of(const Material& material) {
+CoverageTest coverage_test_of(const Material& material) {
     if (material.alpha_mode == AlphaMode::blend)
         return {Coverage::alpha, 0};
     if (material.alpha_mode == AlphaMode::opaque)
@@ -65,7 +65,7 @@ class MaterialImporter {
             return fail(fmt::format("alphaMode '{}' is unknown", source.alphaMode));
         }
         material.double_sided = source.doubleSided;
-        return read_view(base_texture_of(source), presence_of(material), material.base_texture);
+        return read_view(base_texture_of(source), coverage_test_of(material), material.base_texture);
     }
 
     Imported read_base_colour(const tinygltf::Material& source, Material& material) {
@@ -156,8 +156,8 @@ class MaterialImporter {
         warn(state_.map, state_.document.at(rest));
     }
 
-    Imported read_view(const TextureUse& use, CoverageTest presence, TextureView& view) {
-        const auto read = textures_.view_of(use, presence);
+    Imported read_view(const TextureUse& use, CoverageTest coverage, TextureView& view) {
+        const auto read = textures_.view_of(use, coverage);
         if (!read)
             return fail(read.error());
         view = *read;

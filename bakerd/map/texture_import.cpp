@@ -53,10 +53,10 @@ tl::expected<void, std::string> apply_texture_transform(const tinygltf::Value& e
 }  // namespace
 
 tl::expected<TextureView, std::string> TextureImporter::view_of(const TextureUse& use,
-                                                                CoverageTest presence) {
+                                                                CoverageTest coverage) {
     if (use.index < 0)
         return TextureView{};
-    const auto texture = texture_index(use.index, presence);
+    const auto texture = texture_index(use.index, coverage);
     if (!texture)
         return tl::unexpected(texture.error());
     TextureView view;
@@ -69,14 +69,14 @@ tl::expected<TextureView, std::string> TextureImporter::view_of(const TextureUse
     return view;
 }
 
-tl::expected<std::uint32_t, std::string> TextureImporter::texture_index(int index, CoverageTest presence) {
+tl::expected<std::uint32_t, std::string> TextureImporter::texture_index(int index, CoverageTest coverage) {
     const tinygltf::Model& model = state_.document.model;
     const tinygltf::Texture& source = at_index(model.textures, index);
     if (source.source < 0)
         return tl::unexpected(fmt::format("texture {} has no PNG or JPEG source", index));
     Use use;
     use.image = source.source;
-    use.presence = presence;
+    use.coverage = coverage;
     if (source.sampler >= 0) {
         const tinygltf::Sampler& sampler = at_index(model.samplers, source.sampler);
         use.wrap_u = wrap_of(sampler.wrapS);
@@ -90,8 +90,8 @@ tl::expected<std::uint32_t, std::string> TextureImporter::texture_index(int inde
         return tl::unexpected(texture.error());
     texture->wrap_u = use.wrap_u;
     texture->wrap_v = use.wrap_v;
-    texture->coverage = presence.coverage;
-    texture->cutoff = presence.cutoff;
+    texture->coverage = coverage.coverage;
+    texture->cutoff = coverage.cutoff;
     texture->digest = digest_texture(*texture);
     const std::uint32_t kept = keep(std::move(*texture));
     decoded_.emplace(use, kept);

@@ -28,7 +28,7 @@ class TextureImporter {
     // The texture that is named, with its transform; a view of nothing when none is. The sentence names
     // neither file nor material; the caller does.
     [[nodiscard]] tl::expected<TextureView, std::string> view_of(const TextureUse& use,
-                                                                 CoverageTest presence);
+                                                                 CoverageTest coverage);
 
   private:
     // A picture as materials use it: many may share one.
@@ -36,12 +36,12 @@ class TextureImporter {
         int image = 0;
         Wrap wrap_u = Wrap::repeat;
         Wrap wrap_v = Wrap::repeat;
-        CoverageTest presence;
+        CoverageTest coverage;
 
         auto operator<=>(const Use&) const = default;
     };
 
-    [[nodiscard]] tl::expected<std::uint32_t, std::string> texture_index(int index, CoverageTest presence);
+    [[nodiscard]] tl::expected<std::uint32_t, std::string> texture_index(int index, CoverageTest coverage);
     [[nodiscard]] tl::expected<Texture, std::string> decode(int image_index) const;
     [[nodiscard]] std::uint32_t keep(Texture texture);
 

@@ -21,7 +21,7 @@ struct Hours {
     Hour noon;                // of the same day; of light by numbers the same again
 };
 
-// Without any light it is noon. A failure without a sentence has been told.
+// Without any light it is noon.
 [[nodiscard]] cli::Result<Hours> read_hours(const RenderRequest& request);
 
 }  // namespace drtv::picture

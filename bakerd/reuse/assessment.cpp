@@ -48,12 +48,12 @@ class Assessor {
         for (const ProbeRecord& probe : footprint_.probes)
             assessment_.probe_bounds.push_back(probe.changed_weight * assessment_.gain);
         for (std::size_t n = 0; n < changes.size() && !settled(); ++n) {
-            const auto [weight, cause] = weigh(changes[n]);
-            if (!(weight > 0) || (assessment_.change && weight <= assessment_.weight))
+            const auto [bound, cause] = bound_of(changes[n]);
+            if (!(bound > 0) || (assessment_.change && bound <= assessment_.change_bound))
                 continue;
             assessment_.change = n;
             assessment_.cause = cause;
-            assessment_.weight = weight;
+            assessment_.change_bound = bound;
         }
         for (const float bound : assessment_.probe_bounds)
             assessment_.bound = std::max(assessment_.bound, bound);
@@ -67,8 +67,8 @@ class Assessor {
     }
 
   private:
-    struct Weighed {
-        float weight = 0;
+    struct ChangeBound {
+        float bound = 0;
         Cause cause = Cause::rays;
     };
 
@@ -110,11 +110,11 @@ class Assessor {
     }
 
     // Counts the change in.
-    Weighed weigh(const Change& change) {
-        Weighed weighed;
-        const auto count = [&](Cause cause, float weight) {
-            if (weight > weighed.weight)
-                weighed = {weight, cause};
+    ChangeBound bound_of(const Change& change) {
+        ChangeBound largest;
+        const auto count = [&](Cause cause, float bound) {
+            if (bound > largest.bound)
+                largest = {bound, cause};
         };
         const auto placement_fails = [&](Cause cause) {
             assessment_.placement_holds = false;
@@ -133,7 +133,7 @@ class Assessor {
             placement_fails(change.item().kind == ItemKind::interior ? Cause::interior : Cause::placement);
         if (within_reach(boxes))
             count(Cause::rays, count_rays(boxes));
-        return weighed;
+        return largest;
     }
 
     // Where geometry was and is.

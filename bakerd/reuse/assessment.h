@@ -31,10 +31,10 @@ struct Assessment {
     std::vector<float> probe_bounds;
     float gain = 1;         // of a path's weight, in all bounds (Footprint::gain)
     float static_gain = 0;  // of static light alone (Footprint::static_gain)
-    // Of the change that weighs most; nothing of a hit.
+    // The change with the largest bound; nothing of a hit.
     std::optional<std::size_t> change;  // index
     Cause cause = Cause::rays;
-    float weight = 0;  // of that change alone
+    float change_bound = 0;  // of that change alone
 };
 
 // Whether the result of a bake with `settings` holds for the map of `world`; `changes` are those from the

@@ -44,19 +44,19 @@ const char* words_for(ChangeKind kind) {
     return "changed";
 }
 
-std::string where_rays_cross(const Item& item, float weight) {
+std::string where_rays_cross(const Item& item, float bound) {
     const glm::vec3 middle = (item.bounds.low + item.bounds.high) * 0.5f;
-    const auto column = [](float metres) {
+    const auto sector = [](float metres) {
         return static_cast<std::int32_t>(std::floor(metres / static_cast<float>(map::sector_size_m)));
     };
-    const std::string where = fmt::format("rays cross column ({}, {})", column(middle.x), column(middle.y));
-    return weight >= unbounded ? where : fmt::format("{}, weight {:.2g} %", where, weight * 100);
+    const std::string where = fmt::format("rays cross sector ({}, {})", sector(middle.x), sector(middle.y));
+    return bound >= unbounded ? where : fmt::format("{}, bound {:.2g} %", where, bound * 100);
 }
 
 std::string words_for(const Assessment& assessment, const Item& item) {
     switch (assessment.cause) {
         case Cause::rays:
-            return where_rays_cross(item, assessment.weight);
+            return where_rays_cross(item, assessment.change_bound);
         case Cause::placement:
             return "it may move probes";
         case Cause::light:

@@ -12,7 +12,7 @@ namespace drtv::reuse {
 // "palm_017 moved".
 [[nodiscard]] std::string describe(const Change& change);
 
-// "palm_017 moved: rays cross column (12, 7), weight 0.8 %"; nothing of a hit. `changes` are those that were
+// "palm_017 moved: rays cross sector (12, 7), bound 0.8 %"; nothing of a hit. `changes` are those that were
 // assessed.
 [[nodiscard]] std::string describe(const Assessment& assessment, std::span<const Change> changes);
 

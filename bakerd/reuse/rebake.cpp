@@ -89,14 +89,14 @@ bake::Given given_by(const EarlierBake& earlier) {
 }
 
 // By place, of the probes given: of their paths' weight, what may have changed.
-std::map<placement::Position, float, bake::ByPlace> changed_shares(const EarlierBake& earlier) {
-    std::map<placement::Position, float, bake::ByPlace> shares;
+std::map<placement::Position, float, bake::ByPlace> changed_weights(const EarlierBake& earlier) {
+    std::map<placement::Position, float, bake::ByPlace> weights;
     for (std::size_t p = 0; p < earlier.footprint.probes.size(); ++p) {
         const float bound = earlier.assessment.probe_bounds[p];
         if (bound <= earlier.assessment.tolerance)
-            shares[earlier.footprint.probes[p].position] = bound / earlier.assessment.gain;
+            weights[earlier.footprint.probes[p].position] = bound / earlier.assessment.gain;
     }
-    return shares;
+    return weights;
 }
 
 // Whether the sector has a light group that the file has not. What is faint everywhere is in no file: then it
@@ -158,14 +158,14 @@ class Recording {
     }
 
     static void record_probes(Rebake& result, const EarlierBake* earlier) {
-        std::map<placement::Position, float, bake::ByPlace> shares;
+        std::map<placement::Position, float, bake::ByPlace> weights;
         if (earlier != nullptr)
-            shares = changed_shares(*earlier);
+            weights = changed_weights(*earlier);
         for (std::size_t p = 0; p < result.baked.positions.size(); ++p) {
             const placement::Position& position = result.baked.positions[p];
             const bake::ProbeCounts& counts = result.baked.counts[p];
-            const auto reused = shares.find(position);
-            const bool is_reused = reused != shares.end();
+            const auto reused = weights.find(position);
+            const bool is_reused = reused != weights.end();
             const float changed_weight = is_reused ? reused->second : 0;
             result.footprint.probes.push_back(
                 {position, counts.rays, counts.shadow_rays, counts.error, changed_weight});

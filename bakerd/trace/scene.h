@@ -111,7 +111,7 @@ class Scene {
     // alpha takes away counts as there. Of several the nearest, then the first of the map.
     [[nodiscard]] std::optional<std::uint32_t> wall_within(const glm::vec3& point, float max_m) const;
 
-    // To the nearest surface of any kind, at most `most_m`; what alpha takes away counts as there.
+    // To the nearest surface of any kind, at most `max_m`; what alpha takes away counts as there.
     [[nodiscard]] float distance_to_surface(const glm::vec3& point, float max_m) const;
 
     // World bounds of vegetation that overlap the region (its bounds), in the map's order.

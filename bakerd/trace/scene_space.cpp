@@ -170,7 +170,7 @@ struct Scene::Nearest {
     std::optional<std::uint32_t> instance;
 };
 
-// At most `most_m` away.
+// At most `max_m` away.
 Scene::Nearest Scene::nearest_surface(const glm::vec3& point, float max_m, bool only_walls) const {
     struct Search {
         const Scene& scene;

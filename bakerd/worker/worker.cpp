@@ -149,7 +149,7 @@ std::FILE* take_standard_output() {
 
 }  // namespace
 
-tl::unexpected<std::string> run_worker(const Options& options) {
+tl::expected<void, std::string> run_worker(const Options& options) {
     // Dies with the daemon, whatever kills it.
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     std::FILE* out = take_standard_output();

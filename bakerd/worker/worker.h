@@ -16,6 +16,6 @@ struct Options {
 // Ends the process when its input ends; gives a sentence where it cannot begin, or is sent what it does not
 // understand. Standard output is the protocol's alone: whatever libraries print goes to
 // standard error.
-[[nodiscard]] tl::unexpected<std::string> run_worker(const Options& options);
+[[nodiscard]] tl::expected<void, std::string> run_worker(const Options& options);
 
 }  // namespace drtv::worker

@@ -59,14 +59,4 @@ CLI::Validator finite_number() {
     return {check, ""};
 }
 
-CLI::Validator positive_number() {
-    const auto check = [](const std::string& text) {
-        double number = 0;
-        if (CLI::detail::lexical_cast(text, number) && std::isfinite(number) && number > 0)
-            return std::string();
-        return "takes a number above 0, not \"" + text + "\"";
-    };
-    return {check, ""};
-}
-
 }  // namespace drtv::cli

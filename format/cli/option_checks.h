@@ -18,7 +18,5 @@ namespace drtv::cli {
 // Above 0 and below `max`.
 [[nodiscard]] CLI::Validator number_below(double max);
 [[nodiscard]] CLI::Validator finite_number();
-// Above 0.
-[[nodiscard]] CLI::Validator positive_number();
 
 }  // namespace drtv::cli

@@ -30,7 +30,7 @@ std::vector<std::string> options_of(const CLI::App* app) {
     return names;
 }
 
-// The first word that no command and no option takes, in the order of the command line.
+// A word that no command and no option takes; an option before an argument.
 std::optional<std::string> unknown_word(const CLI::App& app) {
     std::vector<std::string> words = app.remaining();
     for (const CLI::App* command : app.get_subcommands()) {
@@ -51,7 +51,8 @@ std::string sentence_of(const CLI::App& app, const CLI::ParseError& error) {
     const std::string prefix = chosen.empty() ? "" : command.get_name() + ": ";
     const std::string more = name + " --help says more";
     const std::optional<std::string> unknown = unknown_word(app);
-    if (!unknown && chosen.empty())
+    const bool lacks_command = chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    if (!unknown && lacks_command)
         return with_hint("a command is required", "", more);
     if (!unknown)
         return with_hint(prefix + error.what(), "", more);
@@ -78,7 +79,7 @@ std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0)
-            return app.exit(error);  // --help, --version
+            return app.exit(error), end_program(exit_done);  // --help, --version
         return complain({exit_usage, sentence_of(app, error)});
     }
 }

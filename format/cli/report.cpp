@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <optional>
@@ -58,7 +59,8 @@ int end_program(const Result<ExitCode>& ended) {
     const ExitCode code = ended ? *ended : complain(ended.error());
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return code;
-    return complain({exit_unreadable, "cannot write to standard output"});
+    const ExitCode unwritten = complain({exit_unreadable, "cannot write to standard output"});
+    return std::max(code, unwritten);
 }
 
 }  // namespace drtv::cli

@@ -36,7 +36,7 @@ cli::Result<cli::ExitCode> run_preview(const PreviewRequest& request) {
     const auto* quantity =
         std::ranges::find(quantities, request.quantity, &std::pair<std::string_view, DotQuantity>::first);
     if (quantity == quantities.end())
-        return cli::exit_usage;  // the command line is checked before
+        return cli::fail(cli::exit_usage, "preview: there is no quantity \"" + request.quantity + "\"");
     const auto files = kit::sector_files(request.path);
     if (!files)
         return tl::unexpected(files.error());

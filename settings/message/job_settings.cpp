@@ -2,6 +2,7 @@
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>
+#include <google/protobuf/unknown_field_set.h>
 
 #include <concepts>
 
@@ -44,6 +45,10 @@ double get(const Message& message, const FieldDescriptor* field) {
     return static_cast<double>(fields.GetFloat(message, field));
 }
 
+bool has_unknown_fields(const Message& message) {
+    return !message.GetReflection()->GetUnknownFields(message).empty();
+}
+
 }  // namespace
 
 void set_field(v1::Job& job, const Setting& setting, double value) {
@@ -54,6 +59,9 @@ tl::expected<JobSettings, std::string> read_settings(const v1::Job& job) {
     auto settings = preset(job.settings().preset());
     if (!settings)
         return settings;
+    if (has_unknown_fields(job.settings()))
+        return tl::unexpected(
+            std::string("the settings have fields of another version of bake: use the same for both"));
     for (const Setting& setting : table()) {
         const Message& message = message_of(job, setting);
         const FieldDescriptor* field = field_of(message, setting);

@@ -638,6 +638,10 @@ class Daemon(FarmTest):
             "bakerd", "serve", "--data", "/proc/drtv", "--listen", "127.0.0.1:0", timeout=20
         )
         self.assert_sentence(unwritable, "/proc/drtv", status=UNREADABLE)
+        no_port = self.farm.run(
+            "bakerd", "serve", "--data", self.farm.path("x"), "--listen", "127.0.0.1:99999", timeout=20
+        )
+        self.assert_sentence(no_port, "127.0.0.1:99999", status=UNREADABLE)
 
     def test_wrong_arguments_are_told(self):
         for arguments, part in (
@@ -924,6 +928,9 @@ class RealMaps(FarmTest):
                     self.daemon, "submit", path, "--preset", "draft", "--set", "rays=16", "--wait"
                 )
                 if kind == "valid" and done.returncode == 0:
+                    continue
+                if kind == "valid" and "has no ground" in done.stderr:
+                    self.assertEqual(done.returncode, INVALID)
                     continue
                 self.assert_sentence(done, os.path.basename(path), status=INVALID)
                 if kind == "valid":

@@ -128,8 +128,10 @@ class LastSchemas : public SchemaTest {
     }
 };
 
-TEST_F(LastSchemas, KeepResultsForTheirMapAndThoseThatReusedThem) {
-    write_schema(4);
+class KeptSchemas : public LastSchemas, public testing::WithParamInterface<int> {};
+
+TEST_P(KeptSchemas, KeepResultsForTheirMapAndThoseThatReusedThem) {
+    write_schema(GetParam());
     const auto database = open();
     for (const CacheEntry& entry : find(*database, inventory_of_job(*database, 1))) {
         ASSERT_TRUE(entry.held);
@@ -153,6 +155,8 @@ TEST_F(LastSchemas, KeepResultsForTheirMapAndThoseThatReusedThem) {
         EXPECT_EQ(map->sectors, (std::vector<map::SectorCoordinate>{{0, 0}, {1, 0}, {0, 1}, {1, 1}}));
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Versions, KeptSchemas, testing::Values(4, 5));
 
 // Their records are of another kind: they are found no more, and leave the cache in their time.
 TEST_F(LastSchemas, ResultsOfTheThirdAreGivenUp) {

@@ -102,6 +102,7 @@ class Pictures(Render):
             text=points,
         )
         self.assertEqual(relit.returncode, 0, relit.stderr)
+        json_lines.check("drtv", "relight", relit.stdout)
         compared = 0
         for surface, line in zip(surfaces, relit.stdout.splitlines(), strict=True):
             colour = json.loads(line)["colour"]

@@ -4,6 +4,7 @@
 #include "tests/map/gltf_builder.h"
 
 #include "drtv/v1/blob.grpc.pb.h"
+#include "drtv/v1/error.pb.h"
 #include "drtv/v1/job.grpc.pb.h"
 #include "drtv/v1/map.grpc.pb.h"
 #include "drtv/v1/sector.grpc.pb.h"
@@ -126,6 +127,33 @@ class ServiceTest : public testing::Test {
     std::unique_ptr<v1::Jobs::Stub> jobs_;
     std::unique_ptr<v1::Sectors::Stub> sectors_;
 };
+
+TEST_F(ServiceTest, SettingsAreCheckedAndGivenBackWhole) {
+    v1::CreateJobRequest request;
+    request.mutable_job()->set_map(create_flat_map());
+    v1::BakeSettings& settings = *request.mutable_job()->mutable_settings();
+    settings.set_preset("draft");
+    const auto create = [&](v1::Job& job) {
+        grpc::ClientContext context;
+        return jobs_->CreateJob(&context, request, &job);
+    };
+    v1::Job job;
+    settings.set_rays(8);
+    const grpc::Status refused = create(job);
+    EXPECT_EQ(refused.error_code(), StatusCode::INVALID_ARGUMENT);
+    EXPECT_EQ(refused.error_message(), "rays must be a number from 16 to 65536, not 8");
+    v1::ErrorDetails details;
+    EXPECT_TRUE(details.ParseFromString(refused.error_details()));
+    EXPECT_FALSE(details.server_version().empty());
+    settings.set_rays(16);
+    request.mutable_job()->set_tolerance(1);
+    EXPECT_EQ(create(job).error_code(), StatusCode::INVALID_ARGUMENT);
+    request.mutable_job()->set_tolerance(0);
+    ASSERT_TRUE(create(job).ok());
+    EXPECT_EQ(job.settings().rays(), 16u);
+    EXPECT_TRUE(job.settings().has_bounces() && job.settings().has_lprt() && job.has_tolerance());
+    EXPECT_EQ(job.tolerance(), 0);
+}
 
 TEST_F(ServiceTest, UploadGoesOnWhereItBroke) {
     const std::string bytes(1500000, 'x'), first = bytes.substr(0, 600000), rest = bytes.substr(600000);

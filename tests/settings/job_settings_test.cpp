@@ -64,5 +64,15 @@ TEST(SettingsMessage, EveryFieldOutOfRangeIsRefused) {
     EXPECT_FALSE(read_settings(job_of("")));
 }
 
+// What they ask for would be left out without a word.
+TEST(SettingsMessage, FieldsOfAnotherVersionAreRefused) {
+    v1::Job job = job_of("draft");
+    std::string bytes = job.settings().SerializeAsString();
+    bytes += std::string("\x12\x02\x0a\x00", 4);  // field 2, which was a map of texts
+    ASSERT_TRUE(job.mutable_settings()->ParseFromString(bytes));
+    EXPECT_EQ(read_settings(job).error(),
+              "the settings have fields of another version of bake: use the same for both");
+}
+
 }  // namespace
 }  // namespace drtv::settings

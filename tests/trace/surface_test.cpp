@@ -126,7 +126,7 @@ TEST(Leaves, BrightOnesStayWithinTheLimit) {
 }
 
 // Whatever a surface is made of, what a path takes on from it is within the map's bound.
-TEST(MostScattered, NoSurfaceScattersMore) {
+TEST(MaxScattered, NoSurfaceScattersMore) {
     std::mt19937 random(2);
     const auto colour = [&](float most) {
         return glm::vec3(between(random, 0, most), between(random, 0, most), between(random, 0, most));
@@ -180,7 +180,7 @@ TEST(MostScattered, NoSurfaceScattersMore) {
     EXPECT_GT(close, 300);
 }
 
-TEST(MostScattered, IsOfTheBrightestThatIsThere) {
+TEST(MaxScattered, IsOfTheBrightestThatIsThere) {
     Skin skin(glm::vec3(0.5f));
     EXPECT_EQ(trace::max_scattered(skin.map), trace::min_scattered);
     skin.map.meshes.emplace_back().primitives.push_back(skin.primitive);
