@@ -78,9 +78,10 @@ std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
         app.parse(argc, argv);
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0)
-            return app.exit(error), end_program(exit_done);  // --help, --version
-        return complain({exit_usage, sentence_of(app, error)});
+        if (error.get_exit_code() != 0)
+            return complain({exit_usage, sentence_of(app, error)});
+        app.exit(error);  // --help, --version
+        return end_program(exit_done);
     }
 }
 
