@@ -1,10 +1,13 @@
-// Everything that must come out the same on every CPU, as bytes: same_on_cpus.py runs this on two and
-// compares.
-//   cpu_bytes rays COUNT SEED OUT         hits of COUNT random rays and a tenth as many along axes, 8 bytes a
-//   ray cpu_bytes bake OUT                    sectors of a small map, with all that a sector can hold
-//   cpu_bytes bake OUT MAP.glb SECTORS    so many sectors of a map, spread over it
-// Sectors are baked with draft and with pc, both with few rays; the bytes of file and record follow each
-// other.
+// Everything that must come out the same on every CPU, as bytes: same_on_cpus.py runs this on three and compares.
+//
+//   cpu_bytes rays COUNT SEED OUT
+//     hits of COUNT random rays and a tenth as many along axes, 8 bytes per ray
+//   cpu_bytes bake OUT
+//     sectors of a small map, with all that a sector can hold
+//   cpu_bytes bake OUT MAP.glb SECTORS
+//     so many sectors of a map, spread over it
+//
+// Sectors are baked with draft and with pc, both with few rays; the bytes of file and record follow each other.
 #include "bakerd/bake/sector_file.h"
 #include "bakerd/reuse/footprint_record.h"
 #include "bakerd/reuse/rebake.h"
