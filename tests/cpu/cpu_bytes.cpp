@@ -1,4 +1,5 @@
-// Everything that must come out the same on every CPU, as bytes: same_on_cpus.py runs this on three and compares.
+// Everything that must come out the same on every CPU, as bytes: same_on_cpus.py runs this on three and
+// compares.
 //
 //   cpu_bytes rays COUNT SEED OUT
 //     hits of COUNT random rays and a tenth as many along axes, 8 bytes per ray
@@ -7,7 +8,8 @@
 //   cpu_bytes bake OUT MAP.glb SECTORS
 //     so many sectors of a map, spread over it
 //
-// Sectors are baked with draft and with pc, both with few rays; the bytes of file and record follow each other.
+// Sectors are baked with draft and with pc, both with few rays; the bytes of file and record follow each
+// other.
 #include "bakerd/bake/sector_file.h"
 #include "bakerd/reuse/footprint_record.h"
 #include "bakerd/reuse/rebake.h"
