@@ -3,6 +3,7 @@
 
 #include "client/connection.h"
 #include "format/cli/failure.h"
+#include "settings/table.h"
 
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@ namespace drtv::client {
 struct SubmitOptions {
     std::vector<std::string> maps;  // glTF files, or folders of them
     std::string region;             // "X0,Y0,X1,Y1", or empty
-    std::string preset = "console";
+    std::string preset{settings::default_preset};
     std::vector<std::string> settings;  // "key=value"
     bool exact = false;                 // tolerance=0
     bool wait = false;

@@ -1,7 +1,6 @@
 #include "settings/table.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -52,18 +51,28 @@ constexpr std::array settings_table = {
             "allows none. With lprt there is no such reuse"},
 };
 
+// `shown` is what was given instead.
+tl::unexpected<std::string> out_of_range(const Setting& setting, std::string_view shown) {
+    return tl::unexpected(fmt::format("{} must be a number from {} to {}, not {}",
+                                      setting.name,
+                                      text_of(setting.min),
+                                      text_of(setting.max),
+                                      shown));
+}
+
+bool is_in_range(const Setting& setting, double value) {
+    return value >= setting.min && value <= setting.max &&
+           (!is_integer(setting) || value == std::trunc(value));
+}
+
 template <class Number>
 tl::expected<double, std::string> parse_as(const Setting& setting, std::string_view text) {
     Number number{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc() && end == text.data() + text.size() &&
-        check(setting, static_cast<double>(number)))
+        is_in_range(setting, static_cast<double>(number)))
         return static_cast<double>(number) + 0.0;  // no negative zero: it is the same setting
-    return tl::unexpected(fmt::format("{} must be a number from {} to {}, not '{}'",
-                                      setting.name,
-                                      text_of(setting.min),
-                                      text_of(setting.max),
-                                      text));
+    return out_of_range(setting, fmt::format("'{}'", text));
 }
 
 }  // namespace
@@ -103,14 +112,9 @@ tl::expected<double, std::string> parse(const Setting& setting, std::string_view
 }
 
 tl::expected<void, std::string> check(const Setting& setting, double value) {
-    if (value >= setting.min && value <= setting.max && (!is_integer(setting) || value == std::trunc(value)))
+    if (is_in_range(setting, value))
         return {};
-    const std::string shown = is_integer(setting) ? fmt::format("{}", value) : text_of(value);
-    return tl::unexpected(fmt::format("{} must be a number from {} to {}, not {}",
-                                      setting.name,
-                                      text_of(setting.min),
-                                      text_of(setting.max),
-                                      shown));
+    return out_of_range(setting, is_integer(setting) ? fmt::format("{}", value) : text_of(value));
 }
 
 void assign(JobSettings& settings, const Setting& setting, double value) {

@@ -34,6 +34,14 @@ def check(program, command, stdout):
         validator(key).validate(json.loads(line))
 
 
+def read(program, arguments, stdout, stderr):
+    """Holds what a program printed against the schemas, where it was asked for JSON. Gives standard error as text."""
+    if "--json" not in arguments:
+        return stderr
+    check(program, arguments[0], stdout)
+    return messages_as_text(stderr)
+
+
 def messages_as_text(stderr):
     """Standard error, whose lines are objects of their schema, as it reads without --json."""
     text = ""

@@ -3,6 +3,7 @@
 
 `--self-test` plants references to nothing and checks that each is found.
 """
+import functools
 import os
 import re
 import subprocess
@@ -57,7 +58,8 @@ def tracked(root):
 
 class Project:
     def __init__(self, root, files):
-        self.root, self.files = root, files
+        self.root, self.files = root, dict.fromkeys(files)
+        self.read = functools.cache(self.read_file)
         self.endings = set()
         for path in files:
             parts = path.split("/")
@@ -65,10 +67,14 @@ class Project:
         self.tests = set()
         for path in files:
             if path.startswith("tests/") and path.endswith((".cpp", ".h", ".py")):
-                text = self.read(path)
-                self.tests.update(re.findall(r"TEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)", text))
+                self.tests.update(re.findall(r"TEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)", self.read(path)))
+        self.suites = {suite for suite, _ in self.tests}
+        design = self.read("docs/design.md")
+        self.slides = set(re.findall(r"^\| (\d+) \|", design, re.MULTILINE))
+        self.promises = set(re.findall(r"^(\d+)\. \*\*", design, re.MULTILINE))
+        self.measurements = set(re.findall(r"^#+ (.*)$", self.read("docs/measurements.md"), re.MULTILINE))
 
-    def read(self, path):
+    def read_file(self, path):
         with open(os.path.join(self.root, path), encoding="utf-8") as file:
             return file.read()
 
@@ -81,18 +87,6 @@ class Project:
     def sections(self, path):
         return set(re.findall(r"^#+ (\d+(?:\.\d+)?)\b", self.read(path), re.MULTILINE))
 
-    def slides(self):
-        page = "docs/design.md"
-        return (
-            set(re.findall(r"^\| (\d+) \|", self.read(page), re.MULTILINE)) if page in self.files else set()
-        )
-
-    def promises(self):
-        page = "docs/design.md"
-        return (
-            set(re.findall(r"^(\d+)\. \*\*", self.read(page), re.MULTILINE)) if page in self.files else set()
-        )
-
 
 def check_file(project, path):
     text = comments_of(path, project.read(path))
@@ -104,20 +98,20 @@ def check_file(project, path):
         if document and section not in project.sections(document):
             yield f"{path}: names {name}, section {section}, which {document} has not"
     for heading in sorted(set(re.findall(r'docs/measurements\.md,\s+"([^"]+)"', text))):
-        if not re.search(rf"^#+ {re.escape(heading)}$", project.read("docs/measurements.md"), re.MULTILINE):
+        if heading not in project.measurements:
             yield f"{path}: names the measurement {heading}, which docs/measurements.md has not"
     for name, promise in sorted(set(PROMISE.findall(text))):
-        if promise not in project.promises():
+        if promise not in project.promises:
             yield f"{path}: names promise {promise}, which {name} has not"
     for slide in sorted({number for numbers in SLIDE.findall(text) for number in numbers if number}):
-        if slide not in project.slides():
+        if slide not in project.slides:
             yield f"{path}: names slide {slide}, of which docs/design.md says nothing"
     for slide in sorted(set(OLD_SLIDE.findall(text))):
         yield f"{path}: says {slide} for a slide"
     if "DESIGN" in text:
         yield f"{path}: names DESIGN: the page is docs/design.md"
     for suite, case in sorted(set(TEST.findall(text))):
-        if any(suite == known for known, _ in project.tests) and (suite, case) not in project.tests:
+        if suite in project.suites and (suite, case) not in project.tests:
             yield f"{path}: names the test {suite}.{case}, which is not there"
 
 

@@ -106,9 +106,7 @@ class Farm:
             check=False,
             env={**os.environ, **(env or {})},
         )
-        if "--json" in arguments:
-            json_lines.check(program, arguments[0], done.stdout)
-            done.stderr = json_lines.messages_as_text(done.stderr)
+        done.stderr = json_lines.read(program, arguments, done.stdout, done.stderr)
         return done
 
     def bake(self, daemon, *arguments, **named):

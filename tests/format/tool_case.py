@@ -65,9 +65,7 @@ class Tool(unittest.TestCase):
         """Runs and checks: the exit code, words on stderr (none: it is empty), words on stdout when asked."""
         result = drtv(*arguments, **options)
         stdout, stderr = result.stdout.decode(), result.stderr.decode()
-        if "--json" in arguments:
-            json_lines.check("drtv", arguments[0], stdout)
-            stderr = json_lines.messages_as_text(stderr)
+        stderr = json_lines.read("drtv", arguments, stdout, stderr)
         self.assertEqual(result.returncode, exit_code, (arguments, stdout[-500:], stderr))
         if err:
             self.assertIn(err, stderr)

@@ -422,9 +422,7 @@ class Usage(Tool):
             result = drtv("relight", *arguments, input=points)
             self.assertEqual(result.returncode, exit_code, result.stderr)
             self.assertEqual(result.stdout, b"")
-            stderr = result.stderr.decode()
-            if "--json" in arguments:
-                stderr = json_lines.messages_as_text(stderr)
+            stderr = json_lines.read("drtv", ("relight", *arguments), "", result.stderr.decode())
             self.assertRegex(stderr, r"\Adrtv: [^\n]+\n\Z")
             self.assertIn(words, stderr)
 
