@@ -1,16 +1,15 @@
 #include "client/gltf_references.h"
 
+#include "map_files/reference.h"
+
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <system_error>
 
 namespace drtv::client {
@@ -22,7 +21,7 @@ using Json = nlohmann::json;
 constexpr std::uint32_t json_chunk = 0x4E4F534A;
 
 // The JSON text of a .gltf or of a .glb's first chunk; empty when there is none to find.
-std::string document_text(const std::string& path) {
+std::string document_text(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::array<char, 20> head{};
     file.read(head.data(), head.size());
@@ -44,57 +43,11 @@ std::string document_text(const std::string& path) {
     return text;
 }
 
-bool is_hex_digit(char c) {
-    return std::isxdigit(static_cast<unsigned char>(c)) != 0;
-}
-
-// What is no %xx stays as it is.
-std::string decode_uri(const std::string& uri) {
-    std::string decoded;
-    for (std::size_t n = 0; n < uri.size(); ++n) {
-        const bool has_room = uri[n] == '%' && n + 2 < uri.size();
-        const bool is_escape = has_room && is_hex_digit(uri[n + 1]) && is_hex_digit(uri[n + 2]);
-        if (!is_escape) {
-            decoded += uri[n];
-            continue;
-        }
-        const std::string digits = uri.substr(n + 1, 2);
-        decoded += static_cast<char>(std::stoi(digits, nullptr, 16));
-        n += 2;
-    }
-    return decoded;
-}
-
-// Below the document's own folder, without tricks; the rest is the server's to refuse.
-bool is_plain(const std::string& path) {
-    if (path.empty() || path.front() == '/' || path.find('\0') != std::string::npos)
-        return false;
-    const fs::path parts(path);
-    const auto leads_up = [](const fs::path& part) { return part == ".."; };
-    return std::none_of(parts.begin(), parts.end(), leads_up);
-}
-
-// The path of a buffer or an image that lies in a file of its own.
-std::optional<std::string> referenced_file(const Json& element) {
-    if (!element.is_object())
-        return std::nullopt;
-    const auto uri = element.find("uri");
-    if (uri == element.end() || !uri->is_string())
-        return std::nullopt;
-    const auto& text = uri->get_ref<const std::string&>();
-    if (text.starts_with("data:"))
-        return std::nullopt;
-    std::string path = decode_uri(text);
-    if (!is_plain(path))
-        return std::nullopt;
-    return path;
-}
-
 }  // namespace
 
-std::vector<std::string> referenced_files(const std::string& gltf_path) {
+std::vector<std::string> outside_uris(const fs::path& document) {
     std::vector<std::string> found;
-    const Json root = Json::parse(document_text(gltf_path), nullptr, false);
+    const Json root = Json::parse(document_text(document), nullptr, false);
     if (!root.is_object())
         return found;
     for (const char* list : {"buffers", "images"}) {
@@ -102,8 +55,12 @@ std::vector<std::string> referenced_files(const std::string& gltf_path) {
         if (elements == root.end() || !elements->is_array())
             continue;
         for (const Json& element : *elements) {
-            if (auto path = referenced_file(element))
-                found.push_back(std::move(*path));
+            const auto uri = element.is_object() ? element.find("uri") : element.end();
+            if (uri == element.end() || !uri->is_string())
+                continue;
+            const auto& text = uri->get_ref<const std::string&>();
+            if (!map_files::is_data_uri(text))
+                found.push_back(text);
         }
     }
     return found;

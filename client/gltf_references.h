@@ -1,13 +1,14 @@
 // The files that a glTF document names.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace drtv::client {
 
-// Those of the buffers and images of a .gltf or .glb, as paths below the document's folder; they need not be
-// there. What is no glTF names none: the server's importer knows what is wrong, and says so.
-[[nodiscard]] std::vector<std::string> referenced_files(const std::string& gltf_path);
+// The uris of the buffers and images that lie outside a .gltf or .glb. What is no glTF names none: the
+// server's importer knows what is wrong, and says so.
+[[nodiscard]] std::vector<std::string> outside_uris(const std::filesystem::path& document);
 
 }  // namespace drtv::client

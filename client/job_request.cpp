@@ -1,7 +1,7 @@
 #include "client/job_request.h"
 
 #include "client/interrupt.h"
-#include "client/map_files.h"
+#include "client/map_contents.h"
 #include "client/upload.h"
 #include "client/whole_file.h"
 #include "format/cli/report.h"
@@ -101,6 +101,8 @@ cli::Result<v1::Job> prepare_job(ServerConnection& connection, const SubmitOptio
     const auto local = collect_map(options.maps);
     if (!local)
         return tl::unexpected(local.error());
+    for (const std::string& document : local->repeated)
+        cli::note(fmt::format("{} is named twice; it is in the map once", document));
     if (!options.pull_folder.empty()) {
         // Before anything is baked: a wrong folder should not cost an hour.
         if (auto made = make_folder(options.pull_folder); !made)

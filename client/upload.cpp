@@ -42,10 +42,10 @@ bool is_passing(const grpc::Status& status) {
 }
 
 grpc::Status find_missing(ServerConnection& connection,
-                          const std::vector<const LocalFile*>& files,
+                          const std::vector<const MapContentFile*>& files,
                           v1::FindMissingBlobsResponse& response) {
     v1::FindMissingBlobsRequest request;
-    for (const LocalFile* file : files) {
+    for (const MapContentFile* file : files) {
         v1::Blob* blob = request.add_blobs();
         blob->set_sha256(file->sha256);
         blob->set_size_bytes(file->size_bytes);
@@ -55,7 +55,7 @@ grpc::Status find_missing(ServerConnection& connection,
 }
 
 cli::Result<grpc::Status> send_blob(ServerConnection& connection,
-                                    const LocalFile& file,
+                                    const MapContentFile& file,
                                     std::int64_t offset,
                                     Transfer& transfer) {
     std::ifstream input(file.disk_path, std::ios::binary);
@@ -87,7 +87,7 @@ cli::Result<grpc::Status> send_blob(ServerConnection& connection,
     return writer->Finish();
 }
 
-cli::Result<void> upload_file(ServerConnection& connection, const LocalFile& file, Transfer& transfer) {
+cli::Result<void> upload_file(ServerConnection& connection, const MapContentFile& file, Transfer& transfer) {
     const std::int64_t sent_before = transfer.sent;
     grpc::Status status;
     for (int attempt = 0; attempt < upload_attempts && !interrupted(); ++attempt) {
@@ -124,22 +124,22 @@ cli::Result<void> upload_file(ServerConnection& connection, const LocalFile& fil
 }
 
 cli::Result<void> upload_missing(ServerConnection& connection,
-                                 const LocalMap& map,
+                                 const MapContents& map,
                                  const v1::FindMissingBlobsResponse& missing) {
     Transfer transfer;
     for (const auto& wanted : missing.missing())
         transfer.total += wanted.blob().size_bytes();
     for (const auto& wanted : missing.missing()) {
-        const auto file = std::ranges::find(map.files, wanted.blob().sha256(), &LocalFile::sha256);
+        const auto file = std::ranges::find(map.files, wanted.blob().sha256(), &MapContentFile::sha256);
         if (auto uploaded = upload_file(connection, *file, transfer); !uploaded)
             return uploaded;
     }
     return {};
 }
 
-v1::CreateMapRequest creation_of(const LocalMap& map) {
+v1::CreateMapRequest creation_of(const MapContents& map) {
     v1::CreateMapRequest request;
-    for (const LocalFile& file : map.files) {
+    for (const MapContentFile& file : map.files) {
         v1::MapFile* added = request.mutable_map()->add_files();
         added->set_path(file.map_path);
         added->set_sha256(file.sha256);
@@ -152,9 +152,9 @@ v1::CreateMapRequest creation_of(const LocalMap& map) {
 
 }  // namespace
 
-cli::Result<v1::Map> upload_map(ServerConnection& connection, const LocalMap& map) {
-    std::vector<const LocalFile*> all;
-    for (const LocalFile& file : map.files)
+cli::Result<v1::Map> upload_map(ServerConnection& connection, const MapContents& map) {
+    std::vector<const MapContentFile*> all;
+    for (const MapContentFile& file : map.files)
         all.push_back(&file);
     v1::FindMissingBlobsResponse missing;
     if (const grpc::Status status = find_missing(connection, all, missing); !status.ok())

@@ -45,19 +45,20 @@ ROOMS = {
     "placement": "drtv/conventions.h GLM CGAL fmt tl-expected",
     "proto": "gRPC protobuf",
     "settings": "fmt tl-expected",
+    "map_files": "nlohmann_json fmt tl-expected",
     "settings/message": "settings proto protobuf tl-expected",
-    "bakerd/map": "drtv/conventions.h GLM tinygltf stb nlohmann_json OpenSSL fmt tl-expected",
+    "bakerd/map": "map_files drtv/conventions.h GLM tinygltf stb nlohmann_json OpenSSL fmt tl-expected",
     "bakerd/trace": "bakerd/map placement GLM Embree fmt tl-expected",
     "bakerd/bake": "bakerd/trace bakerd/map placement settings format GLM TBB fmt tl-expected",
     "bakerd/reuse": "bakerd/bake bakerd/trace bakerd/map placement settings format GLM TBB zstd fmt tl-expected",
-    "bakerd/store": "bakerd/map nlohmann_json fmt tl-expected",
+    "bakerd/store": "bakerd/map map_files nlohmann_json fmt tl-expected",
     "bakerd/worker": "bakerd/reuse bakerd/bake bakerd/trace bakerd/store bakerd/map settings TBB nlohmann_json spdlog fmt tl-expected",
     "bakerd/farm": "bakerd/worker bakerd/reuse bakerd/bake bakerd/store bakerd/map settings SQLite spdlog fmt tl-expected",
     "bakerd/service": "bakerd/farm bakerd/reuse bakerd/store bakerd/map settings/message settings proto gRPC protobuf fmt tl-expected",
-    "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map format/kit format/cli format/light format/runtime format GLM TBB CLI11 stb fmt tl-expected",
+    "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map map_files format/kit format/cli format/light format/runtime format GLM TBB CLI11 stb fmt tl-expected",
     # main wires the rooms together and asks trace whether this CPU will do.
     "bakerd": "bakerd/service bakerd/farm bakerd/picture bakerd/worker bakerd/trace format/cli CLI11 spdlog",
-    "client": "settings/message settings proto format/cli CLI11 nlohmann_json stb OpenSSL gRPC fmt tl-expected",
+    "client": "settings/message settings map_files proto format/cli CLI11 nlohmann_json stb OpenSSL gRPC fmt tl-expected",
 }
 # A game may link these, so nothing in them may rest on a room under another licence.
 MIT_ROOMS = ("format", "proto")

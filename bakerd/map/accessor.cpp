@@ -177,6 +177,8 @@ std::size_t component_count(const GltfDocument& document, int accessor) {
             return 3;
         case TINYGLTF_TYPE_VEC4:
             return 4;
+        case TINYGLTF_TYPE_MAT4:
+            return 16;
         default:
             return 0;
     }

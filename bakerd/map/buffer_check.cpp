@@ -1,46 +1,39 @@
 #include "bakerd/map/buffer_check.h"
 
 #include "bakerd/map/file_source.h"
+#include "map_files/reference.h"
 
 #include <utility>
 
 namespace drtv::map {
 namespace {
 
-// What %xx decodes to may be anything; JSON and the service hold UTF-8 only.
-bool is_utf8(const std::string& text) {
-    const std::string valid_part = Json(text).dump(-1, ' ', false, Json::error_handler_t::ignore);
-    return Json::parse(valid_part) == text;
-}
+// The document that names files, and those that it names.
+struct Outside {
+    const std::string& document;
+    std::vector<OutsideBytes>& bytes;
+};
 
 // A uri becomes what tinygltf shall read: plain base64, or a place in `outside`.
-CheckResult check_uri(Json& element,
-                      const std::string& where,
-                      SizeBytes size_bytes,
-                      std::vector<OutsideBytes>& outside) {
+CheckResult check_uri(Json& element, const std::string& where, SizeBytes size_bytes, Outside& outside) {
     const std::string uri = element["uri"].get<std::string>();
-    if (is_data_uri(uri)) {
+    if (map_files::is_data_uri(uri)) {
         auto plain = plain_data_uri(uri, size_bytes);
         if (!plain)
             return wrong("{}: {}", where, plain.error());
         element["uri"] = std::move(*plain);
         return {};
     }
-    std::optional<std::string> path = decode_uri(uri);
-    if (!path || !is_utf8(*path))
-        return wrong("{}: the uri {} is not valid", where, shown(uri));
-    if (const auto checked = check_path(*path); !checked)
-        return wrong("{}: {}", where, checked.error());
-    element["uri"] = std::to_string(outside.size());
-    element["name"] = *path;
-    outside.push_back({where, std::move(path), size_bytes});
+    auto files = map_files::files_named(outside.document, uri);
+    if (!files)
+        return wrong("{}: {}", where, files.error());
+    element["uri"] = std::to_string(outside.bytes.size());
+    element["name"] = files->front();
+    outside.bytes.push_back({where, std::move(*files), size_bytes});
     return {};
 }
 
-CheckResult check_buffer(const Checker& check,
-                         Json& buffer,
-                         const std::string& where,
-                         std::vector<OutsideBytes>& outside) {
+CheckResult check_buffer(const Checker& check, Json& buffer, const std::string& where, Outside& outside) {
     if (CheckResult checked =
             check.properties(buffer, where, {required(size_at("byteLength")), string_at("uri")});
         !checked)
@@ -53,8 +46,8 @@ CheckResult check_buffer(const Checker& check,
     // Only the first buffer may be the GLB's binary chunk.
     if (where != "buffer 0")
         return wrong("{} has no uri", where);
-    buffer["uri"] = std::to_string(outside.size());
-    outside.push_back({where, std::nullopt, size_bytes});
+    buffer["uri"] = std::to_string(outside.bytes.size());
+    outside.bytes.push_back({where, {}, size_bytes});
     return {};
 }
 
@@ -78,10 +71,7 @@ CheckResult check_buffer_view(const Checker& check, Json& view, const std::strin
     return {};
 }
 
-CheckResult check_image(const Checker& check,
-                        Json& image,
-                        const std::string& where,
-                        std::vector<OutsideBytes>& outside) {
+CheckResult check_image(const Checker& check, Json& image, const std::string& where, Outside& outside) {
     const std::initializer_list<Property> members = {
         string_at("uri"), reference_at("bufferView", "bufferViews"), string_at("mimeType")};
     if (CheckResult checked = check.properties(image, where, members); !checked)
@@ -98,7 +88,10 @@ CheckResult check_image(const Checker& check,
 
 }  // namespace
 
-CheckResult check_buffers(const Checker& check, std::vector<OutsideBytes>& outside) {
+CheckResult check_buffers(const Checker& check,
+                          const std::string& document,
+                          std::vector<OutsideBytes>& outside_bytes) {
+    Outside outside{document, outside_bytes};
     const auto check_one_buffer = [&](Json& buffer, const std::string& where) {
         return check_buffer(check, buffer, where, outside);
     };

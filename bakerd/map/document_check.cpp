@@ -8,6 +8,10 @@
 #include "bakerd/map/node_check.h"
 #include "bakerd/map/node_tree_check.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace drtv::map {
 namespace {
 
@@ -48,8 +52,28 @@ CheckResult check_asset(const Checker& check, Json& root) {
     return {};
 }
 
+// What is wrong at a byte of the text, as an editor counts.
+std::string broken_at(std::string_view json, std::size_t at) {
+    const std::string_view before = json.substr(0, at);
+    const auto line = 1 + std::ranges::count(before, '\n');
+    const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+    const std::string_view how = at >= json.size() ? "ends too early" : "is broken";
+    return fmt::format("it is not glTF: its JSON {} at line {}, column {}", how, line, column);
+}
+
+tl::expected<Json, std::string> parse_json(std::string_view json) {
+    try {
+        return Json::parse(json.begin(), json.end());
+    } catch (const Json::parse_error& error) {
+        // Counted from 1; 0 for the end.
+        return tl::unexpected(broken_at(json, error.byte == 0 ? json.size() : error.byte - 1));
+    } catch (const Json::exception&) {
+        return tl::unexpected(std::string("it is not glTF: its JSON has a number that is out of range"));
+    }
+}
+
 // Each kind of element before those that name it.
-CheckResult check_all(Json& root, std::vector<OutsideBytes>& outside) {
+CheckResult check_all(Json& root, const std::string& path, std::vector<OutsideBytes>& outside) {
     if (!root.is_object())
         return wrong("its JSON is not an object");
     const Checker check(root);
@@ -61,7 +85,7 @@ CheckResult check_all(Json& root, std::vector<OutsideBytes>& outside) {
                                                      object_at("extensions")};
     if (CheckResult checked = check.properties(root, "the file", members); !checked)
         return checked;
-    if (CheckResult checked = check_buffers(check, outside); !checked)
+    if (CheckResult checked = check_buffers(check, path, outside); !checked)
         return checked;
     if (CheckResult checked = check_accessors(check); !checked)
         return checked;
@@ -76,16 +100,17 @@ CheckResult check_all(Json& root, std::vector<OutsideBytes>& outside) {
 
 }  // namespace
 
-tl::expected<CheckedDocument, std::string> check_document(std::string_view json) {
+tl::expected<CheckedDocument, std::string> check_document(std::string_view json, const std::string& path) {
     if (nested_deeper(json, max_depth))
         return tl::unexpected(fmt::format("its JSON is nested deeper than {} levels", max_depth));
-    Json root = Json::parse(json.begin(), json.end(), nullptr, false);
-    if (root.is_discarded())
-        return tl::unexpected(std::string("it is not glTF: its JSON cannot be parsed"));
+    auto parsed = parse_json(json);
+    if (!parsed)
+        return tl::unexpected(parsed.error());
+    Json& root = *parsed;
     CheckedDocument checked;
-    if (CheckResult all = check_all(root, checked.outside); !all)
+    if (CheckResult all = check_all(root, path, checked.outside); !all)
         return tl::unexpected(all.error());
-    for (const char* unneeded : {"animations", "skins", "cameras"})
+    for (const char* unneeded : {"animations", "cameras"})
         root.erase(unneeded);
     checked.json = root.dump();
     return checked;

@@ -1,8 +1,10 @@
 #include "bakerd/map/gltf_document.h"
 
+#include "bakerd/map/data_uri.h"
 #include "bakerd/map/document_check.h"
-#include "bakerd/map/document_uri.h"
+#include "bakerd/map/file_kind.h"
 #include "bakerd/map/glb.h"
+#include "map_files/reference.h"
 
 #include <fmt/format.h>
 
@@ -18,37 +20,56 @@ namespace {
 // What tinygltf's callbacks read from.
 struct FileAccess {
     const FileSource& files;
-    std::string folder;  // with a slash at its end, or empty
     const std::vector<OutsideBytes>& outside;
     std::optional<std::span<const std::uint8_t>> binary_chunk;
     std::string missing;  // the first sentence on a buffer that could not be read
 };
 
-tl::expected<FileBytes, std::string> read_source(const FileAccess& access, const OutsideBytes& wanted) {
-    if (wanted.path)
-        return access.files(access.folder + *wanted.path);
+struct NamedBytes {
+    std::string source;  // for messages
+    FileBytes bytes;
+};
+
+tl::expected<NamedBytes, std::string> read_file_of(const FileSource& files,
+                                                   const std::vector<std::string>& paths) {
+    std::string first_sentence;
+    for (const std::string& path : paths) {
+        auto bytes = files(path);
+        if (bytes)
+            return NamedBytes{"'" + path + "'", std::move(*bytes)};
+        if (first_sentence.empty())
+            first_sentence = bytes.error().sentence;
+        if (!bytes.error().is_missing)
+            return tl::unexpected(bytes.error().sentence);
+    }
+    return tl::unexpected(first_sentence);
+}
+
+tl::expected<NamedBytes, std::string> read_source(const FileAccess& access, const OutsideBytes& wanted) {
+    if (!wanted.files.empty())
+        return read_file_of(access.files, wanted.files);
     if (!access.binary_chunk)
         return tl::unexpected(std::string("it has no uri, and the file no binary chunk"));
-    return FileBytes(access.binary_chunk->begin(), access.binary_chunk->end());
+    return NamedBytes{"the binary chunk", {access.binary_chunk->begin(), access.binary_chunk->end()}};
 }
 
 tl::expected<FileBytes, std::string> read_outside(const FileAccess& access, const OutsideBytes& wanted) {
     const auto fail = [&](const std::string& why) {
         return tl::unexpected(fmt::format("{}: {}", wanted.element, why));
     };
-    auto bytes = read_source(access, wanted);
-    if (!bytes)
-        return fail(bytes.error());
-    const std::string source = wanted.path ? "'" + *wanted.path + "'" : "the binary chunk";
-    const std::size_t size = bytes->size();
+    auto read = read_source(access, wanted);
+    if (!read)
+        return fail(read.error());
+    auto& [source, bytes] = *read;
+    const std::size_t size = bytes.size();
     if (size > max_file_bytes)
         return fail(fmt::format("{} has {} bytes, over the limit of {}", source, size, max_file_bytes));
     if (!wanted.size_bytes)
-        return bytes;
+        return std::move(bytes);
     if (size < *wanted.size_bytes)
         return fail(fmt::format("{} has {} bytes, byteLength says {}", source, size, *wanted.size_bytes));
-    bytes->resize(*wanted.size_bytes);  // it may be longer
-    return bytes;
+    bytes.resize(*wanted.size_bytes);  // it may be longer
+    return std::move(bytes);
 }
 
 // Uris are places in `outside`; tinygltf may put "./" before one.
@@ -115,7 +136,13 @@ std::string first_line(std::string text) {
 
 // The JSON and the binary chunk of a file of either kind.
 tl::expected<GlbChunks, std::string> chunks_of(const FileBytes& bytes) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (const std::string_view kind = foreign_kind(text); !kind.empty())
+        return tl::unexpected(fmt::format("it is {}", kind));
+    // A reader may ignore it (RFC 8259, 8.1).
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(byte_order_mark))
+        text.remove_prefix(byte_order_mark.size());
     GlbChunks chunks{text, std::nullopt};
     if (text.starts_with("glTF")) {
         const auto found = glb_chunks(bytes);
@@ -128,11 +155,6 @@ tl::expected<GlbChunks, std::string> chunks_of(const FileBytes& bytes) {
         return tl::unexpected(
             std::string("it is not a glTF file: it begins neither with JSON nor with a GLB header"));
     return chunks;
-}
-
-std::string folder_of(const std::string& path) {
-    const std::size_t slash = path.rfind('/');
-    return slash == std::string::npos ? "" : path.substr(0, slash + 1);
 }
 
 tl::expected<tinygltf::Model, std::string> load_model(const std::string& json, FileAccess& access) {
@@ -162,22 +184,22 @@ tl::expected<GltfDocument, std::string> load_document(const std::string& path, c
     GltfDocument document;
     document.path = path;
     const auto fail = [&](const std::string& rest) { return tl::unexpected(document.at(rest)); };
-    if (const auto checked = check_path(path); !checked)
+    if (const auto checked = map_files::check_path(path); !checked)
         return fail(checked.error());
     const auto bytes = files(path);
     if (!bytes)
-        return tl::unexpected(bytes.error());
+        return tl::unexpected(bytes.error().sentence);
     if (bytes->size() > max_file_bytes)
         return fail(fmt::format("it has {} bytes, over the limit of {}", bytes->size(), max_file_bytes));
     const auto chunks = chunks_of(*bytes);
     if (!chunks)
         return fail(chunks.error());
-    const auto checked = check_document(chunks->json);
+    const auto checked = check_document(chunks->json, path);
     if (!checked)
         return fail(checked.error());
     if (checked->json.size() > max_file_bytes)
         return fail("its JSON is too long");
-    FileAccess access{files, folder_of(path), checked->outside, chunks->binary, ""};
+    FileAccess access{files, checked->outside, chunks->binary, ""};
     auto model = load_model(checked->json, access);
     if (!model)
         return fail(model.error());

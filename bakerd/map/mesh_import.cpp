@@ -110,6 +110,7 @@ tl::expected<Indices, std::string> indices_of(const GltfDocument& document,
 
 tl::expected<Primitive, std::string> import_primitive(const ImportState& state,
                                                       const NamedPrimitive& primitive,
+                                                      const SkinPose* pose,
                                                       const MaterialIndices& materials) {
     const tinygltf::Primitive& source = primitive.gltf;
     const GltfDocument& document = state.document;
@@ -122,9 +123,13 @@ tl::expected<Primitive, std::string> import_primitive(const ImportState& state,
         source.material < 0 ? materials.back() : at_index(materials, source.material);
     if (!source.attributes.contains("POSITION"))
         return Primitive{};  // as the specification says
-    const auto attributes = read_attributes(document, primitive, state.map.materials[material]);
+    auto attributes = read_attributes(document, primitive, state.map.materials[material]);
     if (!attributes)
         return tl::unexpected(attributes.error());
+    if (pose != nullptr) {
+        if (auto posed = take_pose(*pose, document, primitive, attributes->positions); !posed)
+            return tl::unexpected(posed.error());
+    }
     const auto indices = indices_of(document, primitive, attributes->vertex_count);
     if (!indices)
         return tl::unexpected(indices.error());
@@ -138,6 +143,32 @@ std::size_t elements_of(const tinygltf::Model& model, const tinygltf::Primitive&
     for (const auto& [name, accessor] : primitive.attributes)
         elements += at_index(model.accessors, accessor).count;
     return elements;
+}
+
+tl::expected<std::uint32_t, std::string> import_mesh(const ImportState& state,
+                                                     std::size_t index,
+                                                     const SkinPose* pose,
+                                                     const MaterialIndices& materials) {
+    const tinygltf::Mesh& source = state.document.model.meshes[index];
+    Mesh mesh;
+    for (std::size_t n = 0; n < source.primitives.size(); ++n) {
+        const NamedPrimitive named{source.primitives[n], fmt::format("mesh {}, primitive {}", index, n)};
+        auto primitive = import_primitive(state, named, pose, materials);
+        if (!primitive)
+            return tl::unexpected(primitive.error());
+        if (primitive->triangles.empty())
+            continue;
+        primitive->digest = digest_primitive(*primitive, state.map);
+        warn_of_brightness(state, named.gltf.material, *primitive);
+        for (const glm::vec3& position : primitive->positions)
+            mesh.bounds.extend(position);
+        mesh.primitives.push_back(std::move(*primitive));
+    }
+    if (mesh.primitives.empty())
+        return no_mesh;
+    std::ranges::stable_sort(mesh.primitives, {}, &Primitive::digest);
+    mesh.digest = digest_mesh(mesh);
+    return keep_once(std::move(mesh), state.map.meshes, state.shared.meshes);
 }
 
 }  // namespace
@@ -158,29 +189,21 @@ Imported check_mesh_sizes(const GltfDocument& document) {
     return {};
 }
 
-tl::expected<std::uint32_t, std::string> import_mesh(const ImportState& state,
-                                                     std::size_t index,
-                                                     const MaterialIndices& materials) {
-    const tinygltf::Mesh& source = state.document.model.meshes[index];
-    Mesh mesh;
-    for (std::size_t n = 0; n < source.primitives.size(); ++n) {
-        const NamedPrimitive named{source.primitives[n], fmt::format("mesh {}, primitive {}", index, n)};
-        auto primitive = import_primitive(state, named, materials);
-        if (!primitive)
-            return tl::unexpected(primitive.error());
-        if (primitive->triangles.empty())
-            continue;
-        primitive->digest = digest_primitive(*primitive, state.map);
-        warn_of_brightness(state, named.gltf.material, *primitive);
-        for (const glm::vec3& position : primitive->positions)
-            mesh.bounds.extend(position);
-        mesh.primitives.push_back(std::move(*primitive));
+tl::expected<std::uint32_t, std::string> MeshImporter::index_of(const tinygltf::Node& node) {
+    const std::pair key(node.mesh, node.skin);
+    if (const auto known = known_.find(key); known != known_.end())
+        return known->second;
+    const SkinPose* pose = nullptr;
+    if (node.skin >= 0) {
+        const auto found = skins_.pose_of(node.skin);
+        if (!found)
+            return tl::unexpected(found.error());
+        pose = *found;
     }
-    if (mesh.primitives.empty())
-        return no_mesh;
-    std::ranges::stable_sort(mesh.primitives, {}, &Primitive::digest);
-    mesh.digest = digest_mesh(mesh);
-    return keep_once(std::move(mesh), state.map.meshes, state.shared.meshes);
+    const auto imported = import_mesh(state_, static_cast<std::size_t>(node.mesh), pose, materials_);
+    if (imported)
+        known_[key] = *imported;
+    return imported;
 }
 
 }  // namespace drtv::map

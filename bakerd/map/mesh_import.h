@@ -3,10 +3,12 @@
 
 #include "bakerd/map/import_state.h"
 #include "bakerd/map/material_import.h"
+#include "bakerd/map/skin.h"
 
-#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 
 #include <tl/expected.hpp>
 
@@ -17,10 +19,22 @@ namespace drtv::map {
 
 inline constexpr std::uint32_t no_mesh = UINT32_MAX;
 
-// One glTF mesh; an index into Map::meshes, or no_mesh when it has no triangles. REQUIRES: the document's
-// sizes are checked.
-[[nodiscard]] tl::expected<std::uint32_t, std::string> import_mesh(const ImportState& state,
-                                                                   std::size_t mesh,
-                                                                   const MaterialIndices& materials);
+// The meshes of a document, each imported once for each skin that it wears.
+class MeshImporter {
+  public:
+    // REQUIRES: the document's sizes are checked; all outlive it.
+    MeshImporter(const ImportState& state, const MaterialIndices& materials)
+        : state_(state), materials_(materials), skins_(state.document) {}
+
+    // Of a node's mesh an index into Map::meshes, or no_mesh when it has no triangles. Of a node with a skin,
+    // its vertices stand where the joints hold them, in the scene's axes. REQUIRES: the node has a mesh.
+    [[nodiscard]] tl::expected<std::uint32_t, std::string> index_of(const tinygltf::Node& node);
+
+  private:
+    const ImportState& state_;
+    const MaterialIndices& materials_;
+    Skins skins_;
+    std::map<std::pair<int, int>, std::uint32_t> known_;  // by glTF mesh and skin
+};
 
 }  // namespace drtv::map

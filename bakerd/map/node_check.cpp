@@ -70,6 +70,7 @@ CheckResult check_node_extensions(const Checker& check,
 CheckResult check_node(const Checker& check, std::size_t light_count, Json& node, const std::string& where) {
     const std::initializer_list<Property> members = {references_at("children", "nodes"),
                                                      reference_at("mesh", "meshes"),
+                                                     reference_at("skin", "skins"),
                                                      numbers_at("matrix", 16),
                                                      numbers_at("translation", 3),
                                                      numbers_at("rotation", 4),
@@ -83,6 +84,14 @@ CheckResult check_node(const Checker& check, std::size_t light_count, Json& node
     if (node.contains("matrix") && has_parts)
         return wrong("{} has both a matrix and a translation, rotation or scale", where);
     return check_node_extensions(check, light_count, node, where);
+}
+
+CheckResult check_skin(const Checker& check, Json& skin, const std::string& where) {
+    const std::initializer_list<Property> members = {required(references_at("joints", "nodes")),
+                                                     reference_at("inverseBindMatrices", "accessors")};
+    if (CheckResult checked = check.properties(skin, where, members); !checked)
+        return checked;
+    return skin["joints"].empty() ? wrong("{} has no joints", where) : CheckResult();
 }
 
 CheckResult check_scene(const Checker& check, Json& scene, const std::string& where) {
@@ -99,6 +108,11 @@ CheckResult check_nodes(const Checker& check, Json& root) {
         return check_node(check, light_count, node, where);
     };
     if (CheckResult checked = check.each("nodes", "node", check_one_node); !checked)
+        return checked;
+    const auto check_one_skin = [&](Json& skin, const std::string& where) {
+        return check_skin(check, skin, where);
+    };
+    if (CheckResult checked = check.each("skins", "skin", check_one_skin); !checked)
         return checked;
     return check.each("scenes", "scene", [&](Json& scene, const std::string& where) {
         return check_scene(check, scene, where);

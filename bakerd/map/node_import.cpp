@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 namespace drtv::map {
@@ -50,9 +49,8 @@ class NodeImporter {
     NodeImporter(const ImportState& state, const MaterialIndices& materials)
         : state_(state),
           model_(state.document.model),
-          materials_(materials),
           placer_(state.map, state.shared),
-          mesh_of_(model_.meshes.size()),
+          meshes_(state, materials),
           coarser_(coarser_levels(model_)) {}
 
     Imported run() {
@@ -127,9 +125,11 @@ class NodeImporter {
             return add_probe(pending.node, world_from_node);
         if (node.mesh < 0 || (pending.hidden && !is_volume(pending.purpose.role)))
             return {};
-        const auto mesh = mesh_index(node.mesh);
+        const auto mesh = meshes_.index_of(node);
         if (!mesh)
             return tl::unexpected(mesh.error());
+        // Its vertices stand in the scene's axes already.
+        const glm::dmat4& world_from_mesh = node.skin >= 0 ? world_from_gltf : world_from_node;
         if (*mesh == no_mesh)
             return {};
         if (pending.group_node >= 0 && !is_volume(pending.purpose.role) &&
@@ -137,10 +137,10 @@ class NodeImporter {
             groups_.add_light(pending.group_node);
         const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
         if (instancing != node.extensions.end())
-            return place_instances(pending, {*mesh, world_from_node, node.name}, instancing->second);
+            return place_instances(pending, {*mesh, world_from_mesh, node.name}, instancing->second);
         if (auto counted = placer_.count(*mesh, pending.purpose, 1); !counted)
             return fail(pending.node, counted.error());
-        return place(pending, {*mesh, world_from_node, node.name});
+        return place(pending, {*mesh, world_from_mesh, node.name});
     }
 
     Imported place(const Pending& pending, MeshPlace place) {
@@ -167,18 +167,6 @@ class NodeImporter {
                 return placed;
         }
         return {};
-    }
-
-    tl::expected<std::uint32_t, std::string> mesh_index(int gltf_mesh) {
-        const auto number = static_cast<std::size_t>(gltf_mesh);
-        std::optional<std::uint32_t>& known = mesh_of_[number];
-        if (!known) {
-            const auto imported = import_mesh(state_, number, materials_);
-            if (!imported)
-                return imported;
-            known = *imported;
-        }
-        return *known;
     }
 
     Imported add_probe(int node, const glm::dmat4& world_from_node) {
@@ -234,10 +222,9 @@ class NodeImporter {
 
     const ImportState& state_;
     const tinygltf::Model& model_;
-    const MaterialIndices& materials_;
     MeshPlacer placer_;
-    std::vector<std::optional<std::uint32_t>> mesh_of_;  // by glTF mesh, once imported
-    const std::vector<bool> coarser_;                    // by node
+    MeshImporter meshes_;
+    const std::vector<bool> coarser_;  // by node
     NamedGroups groups_;
 };
 

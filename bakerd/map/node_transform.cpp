@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 
+#include <cmath>
 #include <cstdint>
 
 namespace drtv::map {
@@ -49,9 +50,19 @@ tl::expected<glm::dmat4, std::string> affine(const std::vector<double>& numbers)
         for (glm::length_t r = 0; r < 4; ++r)
             local[c][r] = *number++;
     }
-    const bool is_affine = local[0][3] == 0 && local[1][3] == 0 && local[2][3] == 0 && local[3][3] == 1;
-    if (!is_affine)
-        return tl::unexpected(std::string("its matrix is not affine"));
+    // An inverse in single precision has it nearly so.
+    constexpr double rounding = 1e-6;
+    for (glm::length_t c = 0; c < 4; ++c) {
+        const double exact = c == 3 ? 1 : 0;
+        if (!(std::abs(local[c][3] - exact) <= rounding))
+            return tl::unexpected(fmt::format(
+                "its matrix is not affine: its last row is {}, {}, {}, {}, and must be 0, 0, 0, 1",
+                local[0][3],
+                local[1][3],
+                local[2][3],
+                local[3][3]));
+        local[c][3] = exact;
+    }
     return local;
 }
 

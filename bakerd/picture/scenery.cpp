@@ -1,50 +1,16 @@
 #include "bakerd/picture/scenery.h"
 
 #include "bakerd/map/import.h"
+#include "map_files/local_map.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <vector>
 
 namespace drtv::picture {
 namespace {
-
-namespace fs = std::filesystem;
-
-cli::Result<std::vector<fs::path>> files_of(const std::string& argument) {
-    std::error_code code;
-    const fs::path path = fs::weakly_canonical(fs::absolute(argument, code), code);
-    if (!fs::exists(path, code))
-        return cli::fail(cli::exit_unreadable, fmt::format("the map {} does not exist", argument));
-    if (!fs::is_directory(path, code))
-        return std::vector<fs::path>{path};
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(path, code)) {
-        const fs::path extension = entry.path().extension();
-        if (extension == ".glb" || extension == ".gltf")
-            files.push_back(entry.path());
-    }
-    if (code)
-        return cli::fail(cli::exit_unreadable,
-                         fmt::format("cannot read the folder {}: {}", argument, code.message()));
-    if (files.empty())
-        return cli::fail(cli::exit_unreadable,
-                         fmt::format("the folder {} holds no .glb or .gltf file", argument));
-    return files;
-}
-
-fs::path common_folder(const std::vector<fs::path>& files) {
-    fs::path common = files.front().parent_path();
-    for (const fs::path& file : files) {
-        while (common != common.root_path() && *file.lexically_relative(common).begin() == "..")
-            common = common.parent_path();
-    }
-    return common;
-}
 
 std::size_t triangles_of(const map::Mesh& mesh) {
     std::size_t count = 0;
@@ -74,20 +40,10 @@ std::size_t triangles_near(const map::Map& map, glm::vec2 place) {
 }  // namespace
 
 cli::Result<std::shared_ptr<const map::Map>> read_map(std::span<const std::string> arguments) {
-    std::vector<fs::path> files;
-    for (const std::string& argument : arguments) {
-        auto found = files_of(argument);
-        if (!found)
-            return tl::unexpected(found.error());
-        files.insert(files.end(), found->begin(), found->end());
-    }
-    std::ranges::sort(files);
-    files.erase(std::unique(files.begin(), files.end()), files.end());
-    const fs::path folder = common_folder(files);
-    std::vector<std::string> roots;
-    for (const fs::path& file : files)
-        roots.push_back(file.lexically_relative(folder).generic_string());
-    auto map = map::import_map(roots, map::folder_source(folder.string()));
+    const auto local = map_files::LocalMap::find(arguments);
+    if (!local)
+        return cli::fail(cli::exit_unreadable, local.error());
+    auto map = map::import_map(local->documents(), map::local_source(*local));
     if (!map)
         return cli::fail(cli::exit_invalid, map.error());
     return std::make_shared<const map::Map>(std::move(*map));

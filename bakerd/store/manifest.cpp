@@ -1,5 +1,7 @@
 #include "bakerd/store/manifest.h"
 
+#include "map_files/reference.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -12,17 +14,7 @@ namespace {
 constexpr std::size_t max_path_bytes = 1024;
 
 bool valid_path(const std::string& path) {
-    if (path.empty() || path.size() > max_path_bytes || path.starts_with('/') ||
-        path.find('\\') != std::string::npos || path.find('\0') != std::string::npos)
-        return false;
-    for (std::size_t start = 0; start <= path.size();) {
-        const std::size_t end = std::min(path.find('/', start), path.size());
-        const std::string name = path.substr(start, end - start);
-        if (name.empty() || name == "." || name == "..")
-            return false;
-        start = end + 1;
-    }
-    return true;
+    return path.size() <= max_path_bytes && map_files::check_path(path);
 }
 
 }  // namespace
@@ -89,13 +81,14 @@ map::FileSource manifest_source(const Manifest& manifest, BlobStore& store) {
     for (const ManifestFile& file : manifest.files)
         digests.emplace(file.path, file.digest);
     return [digests = std::move(digests),
-            &store](const std::string& path) -> tl::expected<map::FileBytes, std::string> {
+            &store](const std::string& path) -> tl::expected<map::FileBytes, map::FileFailure> {
         const auto found = digests.find(path);
         if (found == digests.end())
-            return tl::unexpected(fmt::format("the file '{}' is missing", path));
+            return tl::unexpected(map::FileFailure{fmt::format("the file '{}' is missing", path), true});
         auto bytes = store.get(found->second);
         if (!bytes)
-            return tl::unexpected(fmt::format("the file '{}' is lost: {}", path, bytes.error().message));
+            return tl::unexpected(
+                map::FileFailure{fmt::format("the file '{}' is lost: {}", path, bytes.error().message)});
         return std::move(*bytes);
     };
 }

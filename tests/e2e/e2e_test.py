@@ -44,8 +44,9 @@ def world_translation(nodes, number):
     return point
 
 
-def write_map(path, **quads):
-    """A glTF file with a node of that name for each quad: four corners in world axes, counter-clockwise seen from the front."""
+def write_map(path, buffer_uri=None, **quads):
+    """A glTF file with a node of that name for each quad: four corners in world axes, counter-clockwise seen from the front.
+    With a uri the caller writes the buffer; the bytes are given."""
     data = b"".join(
         struct.pack("<3f", x, z, -y) for quad in quads.values() for x, y, z in quad
     ) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
@@ -62,7 +63,9 @@ def write_map(path, **quads):
         "buffers": [
             {
                 "byteLength": len(data),
-                "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode(),
+                "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+                if buffer_uri is None
+                else buffer_uri,
             }
         ],
         "bufferViews": [vertices, indices],
@@ -75,9 +78,10 @@ def write_map(path, **quads):
         "scene": 0,
         "scenes": [{"nodes": list(range(len(quads)))}],
     }
+    os.makedirs(os.path.dirname(path), exist_ok=True)
     with open(path, "w", encoding="utf-8") as file:
         json.dump(document, file)
-    return path
+    return path if buffer_uri is None else data
 
 
 # In one sector, with a wall in its north; the wall's other side comes by turning the order round.
@@ -296,6 +300,58 @@ class Baking(FarmTest):
             [plain["convergence"][key] for key in ("error_asked", "paths_least", "paths_most")],
             [0, 1024, 1024],
         )
+
+
+class Import(FarmTest):
+    def test_references_are_found_as_their_table_says(self):
+        with open(
+            os.path.join(farm_fixture.SOURCE_DIR, "tests/map_files/references.json"), encoding="utf-8"
+        ) as file:
+            cases = json.load(file)
+        daemon = self.farm.daemon()
+        for n, case in enumerate(cases):
+            with self.subTest(case=case):
+                folder = self.farm.path(f"case{n}")
+                document = os.path.join(folder, case["document"])
+                data = write_map(document, case["uri"], lawn=LAWN)
+                if "file" in case:
+                    path = os.path.join(folder, case["file"])
+                    os.makedirs(os.path.dirname(path), exist_ok=True)
+                    with open(path, "wb") as file:
+                        file.write(data)
+                # A second document makes the folder the map's.
+                other = write_map(os.path.join(folder, "other.gltf"), wall=WALL)
+                done = self.farm.bake(daemon, "plan", document, other, *FEW_RAYS)
+                if "file" in case:
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                else:
+                    self.assert_sentence(
+                        done, case["document"] + ": buffer 0: ", case["refused"], status=INVALID
+                    )
+
+    def test_a_link_finds_its_companions_both_ways(self):
+        daemon = self.farm.daemon()
+        for place in ("store", "work"):
+            data = write_map(self.farm.path("store/v7.gltf"), "data.bin", lawn=LAWN)
+            os.makedirs(self.farm.path("work"), exist_ok=True)
+            with open(self.farm.path(f"{place}/data.bin"), "wb") as file:
+                file.write(data)
+            link = self.farm.path("work/map.gltf")
+            if not os.path.islink(link):
+                os.symlink("../store/v7.gltf", link)
+            done = self.farm.bake(daemon, "plan", link, *FEW_RAYS)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            os.unlink(self.farm.path(f"{place}/data.bin"))
+
+    def test_upper_case_endings_and_repeated_maps(self):
+        daemon = self.farm.daemon()
+        write_map(self.farm.path("world/WEST.GLTF"), lawn=LAWN)
+        east = write_map(self.farm.path("world/east.gltf"), lawn=[(x + 64, y, z) for x, y, z in LAWN])
+        done = self.farm.bake(daemon, "plan", self.farm.path("world"), *FEW_RAYS)
+        self.assertIn("2 sectors", done.stdout)
+        done = self.farm.bake(daemon, "plan", self.farm.path("world"), east, *FEW_RAYS)
+        self.assertIn("2 sectors", done.stdout)
+        self.assertIn("east.gltf is named twice", done.stderr)
 
 
 class Determinism(FarmTest):

@@ -24,9 +24,9 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::array<std::string, 1> paths = {"x"};
     const auto map = drtv::map::import_map(
-        paths, [&](const std::string& path) -> tl::expected<drtv::map::FileBytes, std::string> {
+        paths, [&](const std::string& path) -> tl::expected<drtv::map::FileBytes, drtv::map::FileFailure> {
             if (path != paths[0])
-                return tl::unexpected("there is no file " + path);
+                return tl::unexpected(drtv::map::FileFailure{"there is no file " + path, true});
             return drtv::map::FileBytes(data, data + size);
         });
     if (map) {

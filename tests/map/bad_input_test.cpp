@@ -59,6 +59,44 @@ TEST(BadInput, FilesThatAreNotGltf) {
     }
 }
 
+TEST(BadInput, FilesOfOtherProgramsAreNamed) {
+    using namespace std::string_literals;
+    const std::vector<std::pair<std::string, std::string>> kinds = {
+        {"BLENDER-v300RENDH"s, "Blender"},
+        {"\x28\xB5\x2F\xFD\x00"s, "Blender"},
+        {"Kaydara FBX Binary  \0\x1A"s, "FBX"},
+        {"; FBX 7.3.0 project file"s, "FBX"},
+        {"PK\x03\x04\x14"s, "ZIP"},
+        {"\x1F\x8B\x08"s, "gzip"},
+        {"version https://git-lfs.github.com/spec/v1\noid sha256:0"s, "git lfs pull"},
+        {"DRTV\x07"s, "sector file"},
+        {"\x89PNG\r\n\x1A\n"s, "picture"},
+        {"\xFF\xD8\xFF\xE0"s, "picture"},
+        {"ply\nformat ascii 1.0\n"s, "PLY"},
+        {"solid cube\n"s, "STL"},
+        {"# Blender 4.2 MTL File"s, "OBJ"},
+        {"#usda 1.0"s, "USD"},
+        {"PXR-USDC\0"s, "USD"},
+        {"<!DOCTYPE html><html>"s, "web page"},
+        {"\xFF\xFE{\0"s, "UTF-16"},
+        {"<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"x\">"s, "COLLADA"}};
+    for (const auto& [bytes, word] : kinds)
+        expect_refused(import_text(bytes), {"map.gltf: it is ", word});
+}
+
+TEST(BadInput, ByteOrderMarkIsIgnored) {
+    const auto map = import_text("\xEF\xBB\xBF" + sound().gltf());
+    EXPECT_EQ(expect_accepted(map).objects.size(), 1u);
+}
+
+TEST(BadInput, BrokenJsonIsToldByLineAndColumn) {
+    expect_refused(import_text("{\n  \"asset\": {\"version\": \"2.0\"},\n  \"nodes\": [1,]\n}"),
+                   {"broken at line 3, column 15"});
+    expect_refused(import_text("{\"asset\" {}}"), {"broken at line 1, column 10"});
+    expect_refused(import_text("{\"asset\": {\n"), {"ends too early at line 2, column 1"});
+    expect_refused(import_text("{\"asset\": 1e999}"), {"out of range"});
+}
+
 TEST(BadInput, DeeplyNestedJson) {
     for (const char* open : {"[", "{\"a\":"}) {
         std::string text = "{\"asset\":{\"version\":\"2.0\"},\"extras\":";
@@ -106,7 +144,7 @@ TEST(BadInput, Buffers) {
                   [](Json& j) { j["buffers"][0]["uri"] = "data:application/octet-stream;base64,####"; });
     expect_broken({"buffer 0", "uri"}, [](Json& j) { j["buffers"][0]["uri"] = 3; });
     // Decodes to bytes that are not UTF-8 (found by fuzzing: the importer threw).
-    expect_broken({"buffer 0", "uri"}, [](Json& j) { j["buffers"][0]["uri"] = "%AA"; });
+    expect_broken({"buffer 0", "UTF-8"}, [](Json& j) { j["buffers"][0]["uri"] = "%AA"; });
     expect_broken({"buffers"}, [](Json& j) { j["buffers"] = 3; });
     expect_broken({"buffer 0"}, [](Json& j) { j["buffers"][0] = 3; });
     expect_broken({"bufferView 1", "buffer", "7"}, [](Json& j) { j["bufferViews"][1]["buffer"] = 7; });
@@ -165,26 +203,11 @@ TEST(BadInput, GlbBinChunk) {
 }
 
 TEST(BadInput, PathsThatLeaveTheFolder) {
-    for (const char* uri : {"../secret.bin",
-                            "a/../../secret.bin",
-                            "%2e%2e/secret.bin",
-                            "..%2Fsecret.bin",
-                            "a/..",
-                            "/etc/passwd",
-                            "%2Fetc/passwd",
-                            "file:///etc/passwd",
-                            "http://example.org/x",
-                            "C:\\x",
-                            "C:/x",
-                            "..\\x",
-                            "a\\..\\..\\x",
-                            "a%00b",
-                            "",
-                            "%zz",
-                            "\\\\host\\share",
-                            "data:/../../secret.bin",
-                            "DATA:/../x",
-                            "a/./../../x"}) {
+    for (const char* uri :
+         {"../../secret.bin", "a/../../../secret.bin", "%2e%2e/%2e%2e/secret.bin", "..%2F..%2Fsecret.bin",
+          "a/..", "/etc/passwd", "%2Fetc/passwd", "file:///etc/passwd", "http://example.org/x", "C:\\x",
+          "C:/x", "..\\x", "a\\..\\..\\x", "a%00b", "", "\\\\host\\share", "data:/../../secret.bin",
+          "DATA:/../x", "a/./../../../x"}) {
         std::vector<std::string> asked;
         GltfBuilder b;
         b.place(ground(1));
@@ -198,7 +221,7 @@ TEST(BadInput, PathsThatLeaveTheFolder) {
             const std::string text = broken.dump();
             const auto result =
                 map::import_map(std::vector<std::string>{"in/map.gltf"},
-                                [&](const std::string& path) -> tl::expected<FileBytes, std::string> {
+                                [&](const std::string& path) -> tl::expected<FileBytes, map::FileFailure> {
                                     if (path == "in/map.gltf")
                                         return bytes_of(text);
                                     asked.push_back(path);
@@ -214,11 +237,12 @@ TEST(BadInput, PathsThatLeaveTheFolder) {
 TEST(BadInput, MapPathsThatLeaveTheFolder) {
     for (const char* path : {"../map.gltf", "/etc/passwd", "a/../../map.gltf", ""}) {
         bool asked = false;
-        const auto result = map::import_map(std::vector<std::string>{path},
-                                            [&](const std::string&) -> tl::expected<FileBytes, std::string> {
-                                                asked = true;
-                                                return FileBytes{};
-                                            });
+        const auto result =
+            map::import_map(std::vector<std::string>{path},
+                            [&](const std::string&) -> tl::expected<FileBytes, map::FileFailure> {
+                                asked = true;
+                                return FileBytes{};
+                            });
         expect_refused(result, {path});
         EXPECT_FALSE(asked) << path;
     }
@@ -599,27 +623,33 @@ class FolderSource : public ::testing::Test {
         std::filesystem::temp_directory_path() / ("drtv_map_test_" + std::to_string(getpid()));
 };
 
+tl::expected<FileBytes, std::string> read(const map::FileSource& source, const std::string& path) {
+    return source(path).map_error([](const map::FileFailure& failure) { return failure.sentence; });
+}
+
 TEST_F(FolderSource, GivesTheBytes) {
     std::ofstream(folder_ / "sub/x.bin", std::ios::binary) << std::string("a\0b", 3);
     std::ofstream(folder_ / "empty.bin");
     const auto source = map::folder_source(folder_.string());
-    EXPECT_EQ(expect_accepted(source("sub/x.bin")), (FileBytes{'a', 0, 'b'}));
-    EXPECT_TRUE(expect_accepted(source("empty.bin")).empty());
+    EXPECT_EQ(expect_accepted(read(source, "sub/x.bin")), (FileBytes{'a', 0, 'b'}));
+    EXPECT_TRUE(expect_accepted(read(source, "empty.bin")).empty());
 }
 
 TEST_F(FolderSource, RefusesWhatIsNoFile) {
     ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
     const auto source = map::folder_source(folder_.string());
     errno = ENOENT;  // an old error must not show
-    expect_refused(source("sub"), {"sub", "file"});
-    expect_refused(source("pipe"), {"pipe", "file"});
-    expect_refused(source("gone"), {"gone", "No such file"});
+    expect_refused(read(source, "sub"), {"sub", "file"});
+    expect_refused(read(source, "pipe"), {"pipe", "file"});
+    expect_refused(read(source, "gone"), {"gone", "No such file"});
+    EXPECT_TRUE(source("gone").error().is_missing);
+    EXPECT_FALSE(source("pipe").error().is_missing);
 }
 
 TEST_F(FolderSource, RefusesFilesTooLargeToHold) {
     std::ofstream(folder_ / "huge").put('x');
     std::filesystem::resize_file(folder_ / "huge", std::uintmax_t{1} << 36);  // sparse: takes no room
-    expect_refused(map::folder_source(folder_.string())("huge"), {"huge", "limit"});
+    expect_refused(read(map::folder_source(folder_.string()), "huge"), {"huge", "limit"});
 }
 
 }  // namespace

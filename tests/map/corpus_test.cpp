@@ -214,7 +214,7 @@ TEST_F(Corpus, InvalidFilesAreRefusedWithTheElement) {
 }
 
 // Whether the validator's error is one that a baker must not swallow. All others lie in what no bake reads
-// (animations, skins, cameras, morph targets, normals, tangents, other textures, min and max, extensions),
+// (animations, cameras, morph targets, normals, tangents, other textures, min and max, extensions),
 // say nothing about meaning (alignment, names of attributes, buffer targets, empty arrays, declarations of
 // extensions), or are read as they are plainly meant (colours beyond 1 are clamped, positions quantised
 // without saying so, media types that the bytes themselves show better).
@@ -233,9 +233,8 @@ bool must_refuse(const std::string& code, const std::string& pointer) {
         "NODE_LOOP", "NODE_MATRIX_TRS", "NODE_PARENT_OVERRIDE", "SCENE_NON_ROOT_NODE"};
     if (!grave.contains(code))
         return false;
-    for (const char* unread :
-         {"/animations", "/skins", "/cameras", "/targets", "/skin", "/normalTexture", "/emissiveTexture",
-          "/occlusionTexture", "/extensions/KHR_materials", "/extensions/KHR_invalid"}) {
+    for (const char* unread : {"/animations", "/cameras", "/targets", "/normalTexture", "/emissiveTexture",
+                               "/occlusionTexture", "/extensions/KHR_materials", "/extensions/KHR_invalid"}) {
         if (pointer.find(unread) != std::string::npos)
             return false;
     }
@@ -280,8 +279,9 @@ TEST_F(Corpus, ValidatorMeshesPlacedAreMapOrSentence) {
         const auto folder = map::folder_source(path.parent_path().string());
         const auto map =
             map::import_map(std::vector<std::string>{"placed.gltf"}, [&](const std::string& wanted) {
-                return wanted == "placed.gltf" ? tl::expected<FileBytes, std::string>(bytes_of(json.dump()))
-                                               : folder(wanted);
+                return wanted == "placed.gltf"
+                           ? tl::expected<FileBytes, map::FileFailure>(bytes_of(json.dump()))
+                           : folder(wanted);
             });
         if (map)
             expect_sound(*map);

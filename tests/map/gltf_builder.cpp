@@ -134,10 +134,11 @@ std::string base64_of(std::span<const std::uint8_t> bytes) {
 }
 
 map::FileSource source_of(Files files) {
-    return [files = std::move(files)](const std::string& path) -> tl::expected<FileBytes, std::string> {
+    return [files = std::move(files)](const std::string& path) -> tl::expected<FileBytes, map::FileFailure> {
         const auto found = files.find(path);
         if (found == files.end())
-            return tl::unexpected("cannot read " + path + ": No such file or directory");
+            return tl::unexpected(
+                map::FileFailure{"cannot read " + path + ": No such file or directory", true});
         return found->second;
     };
 }

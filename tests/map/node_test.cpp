@@ -110,6 +110,15 @@ TEST(Importer, MatrixMayShear) {
     expect_near(triangles.at(0).corners[2], {7, -7, 7});
 }
 
+// As an inverse in single precision has it.
+TEST(Importer, MatrixMayBeAffineButForRounding) {
+    GltfBuilder b;
+    b.add_node({.mesh = b.add_mesh(triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})),
+                .matrix = {1, 0, 0, 1e-9, 0, 1, 0, -1e-8, 0, 0, 1, 0, 5, 6, 7, 0.9999999}});
+    const Map map = expect_accepted(b.import());
+    expect_near(world_triangles(map, map.objects.at(0)).at(0).corners[0], {5, -7, 6});
+}
+
 TEST(Importer, RotationOfAnyLengthIsNormalised) {
     GltfBuilder b;
     b.add_node(

@@ -288,12 +288,12 @@ void GltfBuilder::use_extension(const std::string& name) {
 map::Map GltfBuilder::import() const {
     const std::string text = root_.dump();
     const std::string path = "memory.gltf";
-    auto map = map::import_map({&path, 1},
-                               [&](const std::string& wanted) -> tl::expected<map::FileBytes, std::string> {
-                                   if (wanted != path)
-                                       return tl::unexpected("no file '" + wanted + "' in memory");
-                                   return map::FileBytes(text.begin(), text.end());
-                               });
+    auto map = map::import_map(
+        {&path, 1}, [&](const std::string& wanted) -> tl::expected<map::FileBytes, map::FileFailure> {
+            if (wanted != path)
+                return tl::unexpected(map::FileFailure{"no file '" + wanted + "' in memory", true});
+            return map::FileBytes(text.begin(), text.end());
+        });
     if (!map)
         throw std::runtime_error(map.error());
     return std::move(*map);

@@ -106,8 +106,8 @@ TEST(ManifestSource, SaysWhichFileIsMissingLostOrDamaged) {
     ASSERT_TRUE(store->put(test::bytes_of("here")));
     const auto source = manifest_source(manifest({"here", "gone"}, {"here"}), *store);
     EXPECT_EQ(source("here").value(), test::bytes_of("here"));
-    EXPECT_NE(source("elsewhere").error().find("'elsewhere' is missing"), std::string::npos);
-    EXPECT_NE(source("gone").error().find("'gone' is lost"), std::string::npos);
+    EXPECT_NE(source("elsewhere").error().sentence.find("'elsewhere' is missing"), std::string::npos);
+    EXPECT_NE(source("gone").error().sentence.find("'gone' is lost"), std::string::npos);
 }
 
 }  // namespace

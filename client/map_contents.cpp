@@ -1,0 +1,64 @@
+#include "client/map_contents.h"
+
+#include "client/gltf_references.h"
+#include "client/sha256.h"
+#include "map_files/local_map.h"
+#include "map_files/reference.h"
+
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+namespace drtv::client {
+namespace {
+
+// The document, and the files beside it that it names.
+void insert_files(const map_files::LocalMap& map, const std::string& document, std::set<std::string>& paths) {
+    paths.insert(document);
+    for (const std::string& uri : outside_uris(map.on_disk(document).value_or(""))) {
+        const auto files = map_files::files_named(document, uri);
+        if (!files)
+            continue;
+        for (const std::string& path : *files) {
+            if (!map.on_disk(path))
+                continue;
+            paths.insert(path);
+            break;
+        }
+    }
+}
+
+cli::Result<MapContentFile> content_file(const map_files::LocalMap& map, const std::string& path) {
+    const std::filesystem::path place = map.on_disk(path).value_or(path);
+    const auto digest = sha256_of_file(place.string());
+    if (!digest)
+        return tl::unexpected(digest.error());
+    MapContentFile file;
+    file.disk_path = place.string();
+    file.map_path = path;
+    file.sha256 = *digest;
+    std::error_code code;
+    file.size_bytes = static_cast<std::int64_t>(std::filesystem::file_size(place, code));
+    return file;
+}
+
+}  // namespace
+
+cli::Result<MapContents> collect_map(const std::vector<std::string>& arguments) {
+    const auto local = map_files::LocalMap::find(arguments);
+    if (!local)
+        return cli::fail(cli::exit_unreadable, local.error());
+    MapContents contents{{}, local->documents(), local->repeated()};
+    std::set<std::string> paths;
+    for (const std::string& document : local->documents())
+        insert_files(*local, document, paths);
+    for (const std::string& path : paths) {
+        auto file = content_file(*local, path);
+        if (!file)
+            return tl::unexpected(file.error());
+        contents.files.push_back(std::move(*file));
+    }
+    return contents;
+}
+
+}  // namespace drtv::client
