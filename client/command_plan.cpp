@@ -123,11 +123,11 @@ void print_text(const v1::Plan& plan) {
 cli::Result<cli::ExitCode> run_plan(ServerConnection& connection,
                                     const SubmitOptions& options,
                                     const std::string& picture) {
-    const auto job = prepare_job(connection, options);
-    if (!job)
-        return tl::unexpected(job.error());
+    const auto prepared = prepare_job(connection, options);
+    if (!prepared)
+        return tl::unexpected(prepared.error());
     v1::PlanJobRequest request;
-    *request.mutable_job() = *job;
+    *request.mutable_job() = prepared->job;
     grpc::ClientContext context;
     v1::Plan plan;
     if (const grpc::Status status = connection.jobs->PlanJob(&context, request, &plan); !status.ok())

@@ -1,6 +1,7 @@
 #include "client/command_submit.h"
 
 #include "client/command_watch.h"
+#include "client/confirm.h"
 #include "client/folder_pull.h"
 #include "client/interrupt.h"
 #include "client/job_text.h"
@@ -29,10 +30,13 @@ void print_submitted(const ServerConnection& connection, const v1::Job& job) {
         std::puts(json_line(job).c_str());
     } else {
         const std::string number = job_number(job);
-        std::printf("job %s: %s sectors%s; watch it with: bake watch %s\n",
+        const std::string time =
+            job.seconds_left() > 0 ? fmt::format(", about {}", duration_text(job.seconds_left())) : "";
+        std::printf("job %s: %s sectors%s%s; watch it with: bake watch %s\n",
                     number.c_str(),
                     with_thousands(job.sectors_total()).c_str(),
                     reused_text(job).c_str(),
+                    time.c_str(),
                     number.c_str());
     }
     for (const std::string& warning : job.warnings())
@@ -70,11 +74,13 @@ cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
 }  // namespace
 
 cli::Result<cli::ExitCode> run_submit(ServerConnection& connection, const SubmitOptions& options) {
-    const auto job = prepare_job(connection, options);
-    if (!job)
-        return tl::unexpected(job.error());
+    const auto prepared = prepare_job(connection, options);
+    if (!prepared)
+        return tl::unexpected(prepared.error());
+    if (auto confirmed = confirm_size(connection, *prepared, options.yes); !confirmed)
+        return tl::unexpected(confirmed.error());
     v1::CreateJobRequest request;
-    *request.mutable_job() = *job;
+    *request.mutable_job() = prepared->job;
     request.set_request_id(random_id());
     grpc::ClientContext context;
     v1::Job created;

@@ -2,34 +2,44 @@
 
 #include "client/interrupt.h"
 #include "client/map_contents.h"
+#include "client/map_text.h"
 #include "client/upload.h"
 #include "client/whole_file.h"
 #include "format/cli/report.h"
-#include "format/cli/suggestion.h"
+#include "format/spelling/suggestion.h"
 #include "settings/message/job_settings.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdio>
+#include <set>
 #include <system_error>
+#include <utility>
 
 namespace drtv::client {
 namespace {
 
+constexpr const char* blanks = " \t";
+
 cli::Result<v1::Region> parse_region(const std::string& text) {
     v1::Region region;
     std::array<double, 4> values{};
-    const char* at = text.data();
-    const char* const end = text.data() + text.size();
+    std::size_t at = 0;
     for (std::size_t n = 0; n < values.size(); ++n) {
-        const auto [stopped, error] = std::from_chars(at, end, values[n]);
+        const std::size_t start = std::min(text.find_first_not_of(blanks, at), text.size());
+        const char* const end = text.data() + text.size();
+        const auto [stopped, error] = std::from_chars(text.data() + start, end, values[n]);
+        const auto behind = static_cast<std::size_t>(stopped - text.data());
+        at = std::min(text.find_first_not_of(blanks, behind), text.size());
         const bool is_last = n + 1 == values.size();
-        const bool separated = is_last ? stopped == end : stopped != end && *stopped == ',';
+        const bool separated = is_last ? at == text.size() : at != text.size() && text[at] == ',';
         if (error != std::errc() || !separated)
             return cli::fail(cli::exit_usage,
                              fmt::format("the region '{}' is not X0,Y0,X1,Y1 in metres", text));
-        at = stopped + 1;
+        ++at;
     }
     region.set_x0(values[0]);
     region.set_y0(values[1]);
@@ -40,9 +50,9 @@ cli::Result<v1::Region> parse_region(const std::string& text) {
 
 // Why `word` is none of the words, which are what `of` says.
 std::string unknown(const std::string& of, const std::string& word, const std::vector<std::string>& words) {
-    return cli::with_hint(fmt::format("there is no {} \"{}\"", of, word),
-                          cli::suggestion(word, words),
-                          "bake submit --help lists them");
+    return spelling::with_hint(fmt::format("there is no {} \"{}\"", of, word),
+                               spelling::suggestion(word, words),
+                               "bake submit --help lists them");
 }
 
 std::vector<std::string> setting_names() {
@@ -52,8 +62,8 @@ std::vector<std::string> setting_names() {
     return names;
 }
 
-// "key=value" of `--set`.
-cli::Result<void> set_setting(v1::Job& job, const std::string& argument) {
+// "key=value" of `--set`; gives the key.
+cli::Result<std::string> set_setting(v1::Job& job, const std::string& argument) {
     const std::size_t equals = argument.find('=');
     if (equals == std::string::npos || equals == 0)
         return cli::fail(cli::exit_usage, fmt::format("--set takes key=value, not '{}'", argument));
@@ -65,7 +75,7 @@ cli::Result<void> set_setting(v1::Job& job, const std::string& argument) {
     if (!value)
         return cli::fail(cli::exit_usage, value.error());
     settings::set_field(job, *setting, *value);
-    return {};
+    return key;
 }
 
 cli::Result<v1::Job> wanted_job(const SubmitOptions& options) {
@@ -77,12 +87,20 @@ cli::Result<v1::Job> wanted_job(const SubmitOptions& options) {
     }
     v1::Job job;
     job.mutable_settings()->set_preset(options.preset);
+    std::set<std::string> keys;
     for (const std::string& setting : options.settings) {
-        if (auto set = set_setting(job, setting); !set)
-            return tl::unexpected(set.error());
+        const auto key = set_setting(job, setting);
+        if (!key)
+            return tl::unexpected(key.error());
+        if (!keys.insert(*key).second)
+            cli::warn(fmt::format("{} is set twice; the last one counts: {}", *key, setting));
     }
-    if (options.exact)
+    if (options.exact) {
+        if (keys.contains("tolerance") && job.tolerance() > 0)
+            return cli::fail(cli::exit_usage,
+                             "--exact is --set tolerance=0, and --set says another tolerance: leave one out");
         job.set_tolerance(0);
+    }
     if (!options.region.empty()) {
         const auto region = parse_region(options.region);
         if (!region)
@@ -94,10 +112,10 @@ cli::Result<v1::Job> wanted_job(const SubmitOptions& options) {
 
 }  // namespace
 
-cli::Result<v1::Job> prepare_job(ServerConnection& connection, const SubmitOptions& options) {
+cli::Result<PreparedJob> prepare_job(ServerConnection& connection, const SubmitOptions& options) {
     auto job = wanted_job(options);
     if (!job)
-        return job;
+        return tl::unexpected(job.error());
     const auto local = collect_map(options.maps);
     if (!local)
         return tl::unexpected(local.error());
@@ -109,15 +127,17 @@ cli::Result<v1::Job> prepare_job(ServerConnection& connection, const SubmitOptio
             return tl::unexpected(made.error());
     }
     catch_interrupt();
-    const auto map = upload_map(connection, *local);
+    auto map = upload_map(connection, *local);
     if (!map)
         return tl::unexpected(map.error());
     if (map->sector_count() == 0)
         return cli::fail(cli::exit_invalid, "the map has no ground, so there is nothing to bake");
+    std::puts((connection.options.json ? map_json_line(*map) : map_text(*map)).c_str());
+    std::fflush(stdout);
     for (const std::string& warning : map->warnings())
         cli::warn(warning);
     job->set_map(map->name());
-    return job;
+    return PreparedJob{std::move(*map), std::move(*job)};
 }
 
 }  // namespace drtv::client

@@ -17,12 +17,19 @@ struct SubmitOptions {
     std::vector<std::string> settings;  // "key=value"
     bool exact = false;                 // tolerance=0
     bool wait = false;
+    bool yes = false;         // a large job needs no question
     std::string pull_folder;  // empty: pull nothing
     double timeout_s = 0;     // of --wait and --pull; 0: without a limit
 };
 
-// Checks the options, makes the folder to pull to, uploads the map, tells its warnings, and gives the job.
-// From the upload on, ctrl-C is caught (interrupt.h).
-[[nodiscard]] cli::Result<v1::Job> prepare_job(ServerConnection& connection, const SubmitOptions& options);
+struct PreparedJob {
+    v1::Map map;
+    v1::Job job;
+};
+
+// Checks the options, makes the folder to pull to, uploads the map, tells what it was understood to hold and
+// what is doubtful in it, and gives the job. From the upload on, ctrl-C is caught (interrupt.h).
+[[nodiscard]] cli::Result<PreparedJob> prepare_job(ServerConnection& connection,
+                                                   const SubmitOptions& options);
 
 }  // namespace drtv::client

@@ -39,6 +39,8 @@ std::string job_number(const Job& job) {
 
 std::string state_name(Job::State state) {
     switch (state) {
+        case Job::WAITING:
+            return "waiting";
         case Job::RUNNING:
             return "running";
         case Job::SUCCEEDED:

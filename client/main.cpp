@@ -70,6 +70,7 @@ void add_map_commands(CLI::App& app, Arguments& to) {
     add_map_options(*submit, to.submit);
     add_map_options(*plan, to.submit);
     plan->add_option("--png", to.picture, "Draw the plan from above to this file");
+    submit->add_flag("--yes", to.submit.yes, "Bake more than 2,500 sectors without a question");
     submit->add_flag("--wait", to.submit.wait, "Show progress until the job ends");
     submit->add_option("--pull", to.submit.pull_folder, "Wait, then write the sector files to this folder");
     add_timeout(*submit, to.submit);

@@ -2,6 +2,7 @@
 
 #include "client/gltf_references.h"
 #include "client/sha256.h"
+#include "map_files/limits.h"
 #include "map_files/local_map.h"
 #include "map_files/reference.h"
 
@@ -12,9 +13,11 @@
 namespace drtv::client {
 namespace {
 
-// The document, and the files beside it that it names.
+// The document, the files that it names, and those that name roles for it.
 void insert_files(const map_files::LocalMap& map, const std::string& document, std::set<std::string>& paths) {
     paths.insert(document);
+    if (const std::string roles = map_files::roles_path(document); map.on_disk(roles))
+        paths.insert(roles);
     for (const std::string& uri : outside_uris(map.on_disk(document).value_or(""))) {
         const auto files = map_files::files_named(document, uri);
         if (!files)
@@ -30,6 +33,10 @@ void insert_files(const map_files::LocalMap& map, const std::string& document, s
 
 cli::Result<MapContentFile> content_file(const map_files::LocalMap& map, const std::string& path) {
     const std::filesystem::path place = map.on_disk(path).value_or(path);
+    std::error_code code;
+    const auto size_bytes = static_cast<std::int64_t>(std::filesystem::file_size(place, code));
+    if (auto checked = map_files::check_size(place.string(), code ? 0 : size_bytes); !checked)
+        return cli::fail(cli::exit_invalid, checked.error());
     const auto digest = sha256_of_file(place.string());
     if (!digest)
         return tl::unexpected(digest.error());
@@ -37,8 +44,7 @@ cli::Result<MapContentFile> content_file(const map_files::LocalMap& map, const s
     file.disk_path = place.string();
     file.map_path = path;
     file.sha256 = *digest;
-    std::error_code code;
-    file.size_bytes = static_cast<std::int64_t>(std::filesystem::file_size(place, code));
+    file.size_bytes = size_bytes;
     return file;
 }
 
@@ -52,6 +58,10 @@ cli::Result<MapContents> collect_map(const std::vector<std::string>& arguments) 
     std::set<std::string> paths;
     for (const std::string& document : local->documents())
         insert_files(*local, document, paths);
+    const auto document_count = static_cast<std::int64_t>(local->documents().size());
+    if (auto checked = map_files::check_counts(document_count, static_cast<std::int64_t>(paths.size()));
+        !checked)
+        return cli::fail(cli::exit_invalid, checked.error());
     for (const std::string& path : paths) {
         auto file = content_file(*local, path);
         if (!file)

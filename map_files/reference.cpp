@@ -150,6 +150,10 @@ tl::expected<void, std::string> check_path(std::string_view path) {
     return {};
 }
 
+std::string roles_path(std::string_view document) {
+    return fmt::format("{}roles.json", document.substr(0, document.rfind('/') + 1));  // npos + 1 is 0
+}
+
 bool is_document_name(std::string_view name) {
     const std::size_t dot = name.rfind('.');
     if (dot == std::string_view::npos)

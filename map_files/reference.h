@@ -25,6 +25,9 @@ namespace drtv::map_files {
 // folder"
 [[nodiscard]] tl::expected<void, std::string> check_path(std::string_view path);
 
+// Where the roles of a document's nodes may stand, beside it: "west/roles.json" for "west/tile.glb".
+[[nodiscard]] std::string roles_path(std::string_view document);
+
 // Whether a file of this name is a glTF document, by its ending: .gltf or .glb, in upper or lower case.
 [[nodiscard]] bool is_document_name(std::string_view name);
 

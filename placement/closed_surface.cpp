@@ -39,7 +39,8 @@ class Turning {
             if (parts_.closed[parts_.part_of[n]] || states[n] != State::unknown)
                 continue;
             if (!turn_part(n, states))
-                return tl::unexpected(std::string("is not a surface: it has no inside, like a Klein bottle"));
+                return tl::unexpected(
+                    std::string("has no inside, as a Klein bottle has none: make it of closed parts"));
         }
         for (std::uint32_t n = 0; n < triangles_.size(); ++n) {
             if (states[n] == State::turned)
@@ -60,9 +61,11 @@ class Turning {
                     edge, [&](const HalfEdge& half) { return parts_.closed[parts_.part_of[half.triangle]]; }))
                 return;
             if (edge.size() > 2)
-                problem = "is not a surface: some edge belongs to three triangles or more";
+                problem =
+                    "has an edge that belongs to three triangles or more: remove its inner faces, or make it "
+                    "of closed parts";
             else if (edge.size() == 1 && problem.empty())
-                problem = "is open: a closed mesh is needed to tell inside from outside";
+                problem = "is open, so inside and outside cannot be told apart: close its holes";
             if (edge.size() != 2)
                 return;
             const bool alike = edge[0].rising == edge[1].rising;
@@ -153,7 +156,8 @@ tl::expected<ClosedSurface, std::string> closed_surface(std::span<const glm::dve
     }
     turn_outwards(surface, parts);
     if (surface.triangles.empty())
-        return tl::unexpected(std::string("bounds no volume: its faces lie on each other, turned apart"));
+        return tl::unexpected(
+            std::string("bounds no volume: its faces lie on each other, turned apart; give it a thickness"));
     return surface;
 }
 

@@ -4,7 +4,6 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/enum.h>
-#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vector_relational.hpp>
@@ -119,12 +118,11 @@ struct ClosedVolume::Mesh {
     }
 };
 
-tl::expected<ClosedVolume, std::string> ClosedVolume::make(std::string_view name,
-                                                           std::span<const glm::dvec3> positions,
+tl::expected<ClosedVolume, std::string> ClosedVolume::make(std::span<const glm::dvec3> positions,
                                                            std::span<const glm::uvec3> triangles) {
     auto surface = closed_surface(positions, triangles);
     if (!surface)
-        return tl::unexpected(fmt::format("the volume '{}' {}", name, surface.error()));
+        return tl::unexpected(surface.error());
     ClosedVolume volume;
     volume.mesh_ = std::make_shared<const Mesh>(std::move(*surface));
     return volume;

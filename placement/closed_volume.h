@@ -6,7 +6,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -16,10 +15,9 @@ namespace drtv::placement {
 class ClosedVolume {
   public:
     // Vertices at equal positions are one (glTF splits them by normal). Where triangles are wound as a closed
-    // surface they are taken so; else they are turned until they are, or it fails with a sentence naming the
-    // volume: when the surface is open, or not a surface.
-    [[nodiscard]] static tl::expected<ClosedVolume, std::string> make(std::string_view name,
-                                                                      std::span<const glm::dvec3> positions,
+    // surface they are taken so; else they are turned until they are, or it fails, with the end of a sentence
+    // that begins with the mesh: when the surface is open, or not a surface.
+    [[nodiscard]] static tl::expected<ClosedVolume, std::string> make(std::span<const glm::dvec3> positions,
                                                                       std::span<const glm::uvec3> triangles);
 
     // Whether the winding number around the point is not 0, or the point lies on the surface. Exact.

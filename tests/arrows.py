@@ -39,7 +39,8 @@ ROOMS = {
     "format": "zstd",
     "format/runtime": "format",
     "format/light": "format/runtime nlohmann_json tl-expected",
-    "format/cli": "drtv/version.h CLI11 nlohmann_json tl-expected",
+    "format/spelling": "",
+    "format/cli": "format/spelling drtv/version.h CLI11 nlohmann_json tl-expected",
     "format/kit": "format/cli format/light format/runtime format CLI11 stb tl-expected",
     "format/tool": "format/kit format/cli format/runtime format CLI11 nlohmann_json tl-expected threads",
     "placement": "drtv/conventions.h GLM CGAL fmt tl-expected",
@@ -47,18 +48,18 @@ ROOMS = {
     "settings": "fmt tl-expected",
     "map_files": "nlohmann_json fmt tl-expected",
     "settings/message": "settings proto protobuf tl-expected",
-    "bakerd/map": "map_files drtv/conventions.h GLM tinygltf stb nlohmann_json OpenSSL fmt tl-expected",
+    "bakerd/map": "map_files format/spelling drtv/conventions.h GLM tinygltf stb nlohmann_json OpenSSL fmt tl-expected",
     "bakerd/trace": "bakerd/map placement GLM Embree fmt tl-expected",
     "bakerd/bake": "bakerd/trace bakerd/map placement settings format GLM TBB fmt tl-expected",
     "bakerd/reuse": "bakerd/bake bakerd/trace bakerd/map placement settings format GLM TBB zstd fmt tl-expected",
     "bakerd/store": "bakerd/map map_files nlohmann_json fmt tl-expected",
     "bakerd/worker": "bakerd/reuse bakerd/bake bakerd/trace bakerd/store bakerd/map settings TBB nlohmann_json spdlog fmt tl-expected",
     "bakerd/farm": "bakerd/worker bakerd/reuse bakerd/bake bakerd/store bakerd/map settings SQLite spdlog fmt tl-expected",
-    "bakerd/service": "bakerd/farm bakerd/reuse bakerd/store bakerd/map settings/message settings proto gRPC protobuf fmt tl-expected",
+    "bakerd/service": "bakerd/farm bakerd/reuse bakerd/store bakerd/map map_files settings/message settings proto gRPC protobuf fmt tl-expected",
     "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map map_files format/kit format/cli format/light format/runtime format GLM TBB CLI11 stb fmt tl-expected",
     # main wires the rooms together and asks trace whether this CPU will do.
     "bakerd": "bakerd/service bakerd/farm bakerd/picture bakerd/worker bakerd/trace format/cli CLI11 spdlog",
-    "client": "settings/message settings map_files proto format/cli CLI11 nlohmann_json stb OpenSSL gRPC fmt tl-expected",
+    "client": "settings/message settings map_files proto format/cli format/spelling CLI11 nlohmann_json stb OpenSSL gRPC fmt tl-expected",
 }
 # A game may link these, so nothing in them may rest on a room under another licence.
 MIT_ROOMS = ("format", "proto")

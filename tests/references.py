@@ -19,7 +19,7 @@ NOT_READ = ("CHANGELOG.md", "tests/data/", "tests/references.py", "tests/arrows.
 # Another project's, the system's, or what a command makes.
 ELSEWHERE = re.compile(
     r"^(CLI|glm|stb|zstd|tl|fmt|grpcpp|gtest|embree3|google|nlohmann|openssl|spdlog)/|^tiny_gltf\.h$"
-    r"|^drtv_runtime\.(h|cpp)$|^(FILE|ANSWER|REQUEST|frame|case)\.json$|^data/volcano\.json$|^doc/xxhash_spec\.md$"
+    r"|^drtv_runtime\.(h|cpp)$|^(FILE|ANSWER|REQUEST|frame|case)\.json$|(^|/)(roles|sectors)\.json$|^data/volcano\.json$|^doc/xxhash_spec\.md$"
 )
 PATH = re.compile(
     r"(?<![\w/.*<>{}$-])((?:[\w-]+/)*[\w-]+(?:\.\w+)*\.(?:h|cpp|c|py|md|json|proto|sh|sql|cmake|glsl|hlsl|wgsl|shader|supp))\b(?![\w/*(-])"

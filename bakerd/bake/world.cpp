@@ -23,6 +23,18 @@ constexpr std::size_t kept_placements = 1024;
 // Those of the paths and of local transfer, of two jobs at once.
 constexpr std::size_t kept_samples = 4;
 
+const char* name_of(map::VolumeKind kind) {
+    switch (kind) {
+        case map::VolumeKind::no_probes:
+            return "of the bake_role 'no_probes'";
+        case map::VolumeKind::interior:
+            return "of the bake_role 'interior'";
+        case map::VolumeKind::spacing:
+            return "with a bake_spacing";
+    }
+    return "";
+}
+
 }  // namespace
 
 World::World(std::shared_ptr<const trace::Device> device,
@@ -60,9 +72,10 @@ tl::expected<std::shared_ptr<World>, std::string> World::open(std::shared_ptr<co
 
 tl::expected<void, std::string> World::open_volumes() {
     for (const map::VolumeNode& volume : map().volumes) {
-        auto closed = placement::ClosedVolume::make(volume.name, volume.positions, volume.triangles);
+        auto closed = placement::ClosedVolume::make(volume.positions, volume.triangles);
         if (!closed)
-            return tl::unexpected(closed.error());
+            return tl::unexpected(
+                fmt::format("{}: its mesh, {}, {}", volume.where, name_of(volume.kind), closed.error()));
         switch (volume.kind) {
             case map::VolumeKind::no_probes:
                 tags_.no_probes.push_back(std::move(*closed));

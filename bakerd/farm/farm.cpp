@@ -126,7 +126,10 @@ Result<JobView> Farm::create_planned(const JobRequest& request) {
                  job.sectors_cached,
                  job.sectors_near);
     const std::int64_t id = job.id;
-    book_.add(std::move(job), wanted_by(planned->plan), planned->plan.warnings);
+    book_.add(std::move(job),
+              wanted_by(planned->plan),
+              planned->plan.warnings,
+              seconds_to_bake(planned->plan, options_.threads));
     executor_->wake();
     return get_job(id);
 }

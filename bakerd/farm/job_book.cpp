@@ -7,7 +7,10 @@
 
 namespace drtv::farm {
 
-void JobBook::add(JobRow row, std::span<const WantedSector> wanted, std::vector<std::string> warnings) {
+void JobBook::add(JobRow row,
+                  std::span<const WantedSector> wanted,
+                  std::vector<std::string> warnings,
+                  double expected_s) {
     // A map from before there were inventories is like no other.
     const Digest& content = row.inventory == Digest{} ? row.manifest : row.inventory;
     BakeKey key{reuse::results_key(row.settings.bake), content, {}, 0};
@@ -15,6 +18,7 @@ void JobBook::add(JobRow row, std::span<const WantedSector> wanted, std::vector<
     Job& job = jobs_[row.id];
     job.row = std::move(row);
     job.warnings = std::move(warnings);
+    job.expected_s = expected_s;
     if (!job.row.request_id.empty())
         by_request_[job.row.request_id] = job.row.id;
     for (const WantedSector& sector : wanted) {
@@ -76,8 +80,10 @@ std::optional<SectorTask> JobBook::next() {
         task.running = true;
         for (const std::int64_t job_id : task.jobs) {
             Job& job = jobs_.at(job_id);
-            if (!job.started)
-                job.started = Clock::now();
+            if (job.started)
+                continue;
+            job.started = Clock::now();
+            changed(job);
         }
         return SectorTask{id, task.request};
     }
@@ -178,8 +184,16 @@ void JobBook::changed(Job& job) {
 }
 
 JobView JobBook::view_of(const Job& job) {
-    JobView view{job.row, job.rays, 0, 0, job.version, job.warnings};
-    if (job.row.state == JobState::running && job.started && job.baked > 0) {
+    JobView view;
+    view.row = job.row;
+    view.rays = job.rays;
+    view.version = job.version;
+    view.warnings = job.warnings;
+    if (job.row.state != JobState::running)
+        return view;
+    view.waiting = !job.started;
+    view.seconds_left = job.expected_s;
+    if (job.started && job.baked > 0) {
         const double seconds = std::chrono::duration<double>(Clock::now() - *job.started).count();
         view.rays_per_second = static_cast<double>(job.rays) / seconds;
         const std::int64_t left = job.row.sectors_total - job.row.sectors_done - job.row.sectors_failed;

@@ -25,7 +25,8 @@ struct JobView {
     JobRow row;
     std::int64_t rays = 0;  // of sectors baked since the server started
     double rays_per_second = 0;
-    double seconds_left = 0;
+    double seconds_left = 0;            // 0: not known
+    bool waiting = false;               // none of its sectors has been taken up yet
     std::uint64_t version = 0;          // grows with each change
     std::vector<std::string> warnings;  // of records that could not be used; of the database; the first few
 };
@@ -58,8 +59,11 @@ struct FinishedSector {
 class JobBook {
   public:
     // A job that is known from now on; `wanted` are its sectors that are not there, in the order of baking.
-    // One that another job waits for is baked once.
-    void add(JobRow row, std::span<const WantedSector> wanted, std::vector<std::string> warnings = {});
+    // One that another job waits for is baked once. `expected_s` is how long they will take; 0: not known.
+    void add(JobRow row,
+             std::span<const WantedSector> wanted,
+             std::vector<std::string> warnings = {},
+             double expected_s = 0);
 
     // The job of a request id. While nobody has it, the caller may make one, and others wait; it must call
     // end_request.
@@ -103,6 +107,7 @@ class JobBook {
         std::optional<Clock::time_point> started;
         std::uint64_t version = 1;
         std::vector<std::string> warnings;
+        double expected_s = 0;  // that it takes; 0: not known
     };
     struct Task {
         BakeKey key;

@@ -12,8 +12,7 @@ struct Columns {
     Digest content;
     Digest inventory;
     std::int64_t sector_count = 0;
-    std::int64_t object_count = 0;
-    std::int64_t triangle_count = 0;
+    map::Survey survey;
     std::vector<std::string> warnings;
 };
 
@@ -22,8 +21,7 @@ void columns(auto& codec, Is<Columns> auto& map) {
     codec("content", map.content);
     codec("inventory", map.inventory);
     codec("sector_count", map.sector_count);
-    codec("object_count", map.object_count);
-    codec("triangle_count", map.triangle_count);
+    map::visit_numbers(codec, map.survey);
     codec("warnings", map.warnings);
 }
 
@@ -67,8 +65,7 @@ void put_map(Connection& connection, const MapRow& map) {
                       summary.content,
                       summary.inventory,
                       static_cast<std::int64_t>(summary.sectors.size()),
-                      summary.object_count,
-                      summary.triangle_count,
+                      summary.survey,
                       summary.warnings};
     insert_row(connection, "map", row);
     for (std::size_t n = 0; n < summary.sectors.size(); ++n) {
@@ -87,11 +84,7 @@ std::optional<worker::MapSummary> find_map(Connection& connection, const Digest&
     columns(reader, row);
     if (!reader.sound())
         return damaged(manifest);
-    // One from before there were inventories is looked at again.
-    if (row.inventory == Digest{})
-        return std::nullopt;
-    worker::MapSummary summary{
-        row.content, row.inventory, {}, row.object_count, row.triangle_count, row.warnings};
+    worker::MapSummary summary{row.content, row.inventory, {}, row.survey, row.warnings};
     SQLite::Statement& sectors = connection.statement(
         select_from<SectorColumns>("map_sector", "WHERE manifest = ? ORDER BY position"));
     sectors.bind(1, to_hex(manifest));

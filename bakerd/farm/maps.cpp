@@ -20,31 +20,36 @@ store::Result<MapView> Maps::create(store::Manifest given) {
     const auto id = blobs_.put({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
     if (!id)
         return tl::unexpected(id.error());
-    const auto known = database_.read([&](Connection& connection) { return find_map(connection, *id); });
+    const auto summary = known_or_inspected(*id);
+    if (!summary)
+        return tl::unexpected(summary.error());
+    return MapView{*id, std::move(*manifest), *summary};
+}
+
+store::Result<worker::MapSummary> Maps::known_or_inspected(const Digest& id) {
+    const auto known = database_.read([&](Connection& connection) { return find_map(connection, id); });
     if (!known)
         return tl::unexpected(known.error());
     if (*known)
-        return MapView{*id, std::move(*manifest), **known};
-    const auto summary = executor_.inspect({*id}).get();
+        return **known;
+    const auto summary = executor_.inspect({id}).get();
     if (!summary) {
         const worker::RequestFailure& failure = summary.error();
         return store::fail(
             failure.may_retry ? store::ErrorCode::unavailable : store::ErrorCode::invalid_argument,
             failure.sentence);
     }
-    const auto put = database_.write([&](Connection& connection) { put_map(connection, {*id, *summary}); });
+    const auto put = database_.write([&](Connection& connection) { put_map(connection, {id, *summary}); });
     if (!put)
         return tl::unexpected(put.error());
-    return MapView{*id, std::move(*manifest), *summary};
+    return *summary;
 }
 
 store::Result<worker::MapSummary> Maps::summary_of(const Digest& manifest) {
-    const auto known = database_.read([&](Connection& connection) { return find_map(connection, manifest); });
-    if (!known)
-        return tl::unexpected(known.error());
-    if (!*known)
+    // Of a map that only the store remembers, as after the database was lost, it is looked at again.
+    if (!blobs_.has(manifest))
         return store::fail(store::ErrorCode::not_found, fmt::format("there is no map {}", to_hex(manifest)));
-    return **known;
+    return known_or_inspected(manifest);
 }
 
 store::Result<MapView> Maps::get(const Digest& id) {

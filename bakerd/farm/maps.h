@@ -23,6 +23,8 @@ class Maps {
     [[nodiscard]] store::Result<worker::MapSummary> summary_of(const Digest& manifest);
 
   private:
+    [[nodiscard]] store::Result<worker::MapSummary> known_or_inspected(const Digest& id);
+
     Database& database_;
     store::BlobStore& blobs_;
     LocalExecutor& executor_;

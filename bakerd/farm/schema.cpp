@@ -172,6 +172,19 @@ ALTER TABLE job RENAME COLUMN local_bounces TO setting_lprt_bounces;
 ALTER TABLE job RENAME COLUMN local_rays TO setting_lprt_rays;
 ALTER TABLE job RENAME COLUMN tolerance TO setting_tolerance;
 )sql",
+    // What a map holds, in numbers. Maps of before are looked at again when they are asked for.
+    R"sql(
+DROP TABLE map;
+DELETE FROM map_sector;
+CREATE TABLE map (
+  manifest TEXT PRIMARY KEY, content TEXT NOT NULL, inventory TEXT NOT NULL, sector_count INTEGER NOT NULL,
+  x0 REAL NOT NULL, y0 REAL NOT NULL, z0 REAL NOT NULL, x1 REAL NOT NULL, y1 REAL NOT NULL, z1 REAL NOT NULL,
+  static_objects INTEGER NOT NULL, vegetation_objects INTEGER NOT NULL, ignored_nodes INTEGER NOT NULL, triangles
+  INTEGER NOT NULL, lamps INTEGER NOT NULL, suns INTEGER NOT NULL, glowing_objects INTEGER NOT NULL, probes INTEGER
+  NOT NULL, interiors INTEGER NOT NULL, probe_free_volumes INTEGER NOT NULL, spacing_volumes INTEGER NOT NULL, up_m2
+  REAL NOT NULL, down_m2 REAL NOT NULL,
+  warnings TEXT NOT NULL, sum INTEGER NOT NULL) WITHOUT ROWID;
+)sql",
 };
 
 constexpr auto newest = static_cast<std::int64_t>(steps.size());

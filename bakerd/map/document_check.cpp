@@ -3,14 +3,13 @@
 #include "bakerd/map/accessor_check.h"
 #include "bakerd/map/extension_check.h"
 #include "bakerd/map/json_checker.h"
+#include "bakerd/map/json_text.h"
 #include "bakerd/map/material_check.h"
 #include "bakerd/map/mesh_check.h"
 #include "bakerd/map/node_check.h"
 #include "bakerd/map/node_tree_check.h"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace drtv::map {
 namespace {
@@ -52,26 +51,6 @@ CheckResult check_asset(const Checker& check, Json& root) {
     return {};
 }
 
-// What is wrong at a byte of the text, as an editor counts.
-std::string broken_at(std::string_view json, std::size_t at) {
-    const std::string_view before = json.substr(0, at);
-    const auto line = 1 + std::ranges::count(before, '\n');
-    const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
-    const std::string_view how = at >= json.size() ? "ends too early" : "is broken";
-    return fmt::format("it is not glTF: its JSON {} at line {}, column {}", how, line, column);
-}
-
-tl::expected<Json, std::string> parse_json(std::string_view json) {
-    try {
-        return Json::parse(json.begin(), json.end());
-    } catch (const Json::parse_error& error) {
-        // Counted from 1; 0 for the end.
-        return tl::unexpected(broken_at(json, error.byte == 0 ? json.size() : error.byte - 1));
-    } catch (const Json::exception&) {
-        return tl::unexpected(std::string("it is not glTF: its JSON has a number that is out of range"));
-    }
-}
-
 // Each kind of element before those that name it.
 CheckResult check_all(Json& root, const std::string& path, std::vector<OutsideBytes>& outside) {
     if (!root.is_object())
@@ -103,9 +82,9 @@ CheckResult check_all(Json& root, const std::string& path, std::vector<OutsideBy
 tl::expected<CheckedDocument, std::string> check_document(std::string_view json, const std::string& path) {
     if (nested_deeper(json, max_depth))
         return tl::unexpected(fmt::format("its JSON is nested deeper than {} levels", max_depth));
-    auto parsed = parse_json(json);
+    auto parsed = parse_json<Json>(json);
     if (!parsed)
-        return tl::unexpected(parsed.error());
+        return tl::unexpected("it is not glTF: its JSON " + parsed.error());
     Json& root = *parsed;
     CheckedDocument checked;
     if (CheckResult all = check_all(root, path, checked.outside); !all)

@@ -1,6 +1,7 @@
 // Where the bytes of a map's files come from: a folder, a store of blobs, or memory.
 #pragma once
 
+#include "map_files/limits.h"
 #include "map_files/local_map.h"
 
 #include <cstddef>
@@ -15,8 +16,8 @@ namespace drtv::map {
 
 using FileBytes = std::vector<std::uint8_t>;
 
-// Larger files are refused; tinygltf and stb_image count in 32 bits.
-inline constexpr std::size_t max_file_bytes = INT32_MAX;
+// Larger files are refused.
+inline constexpr std::size_t max_file_bytes = map_files::max_file_bytes;
 
 // Why a file cannot be had.
 struct FileFailure {

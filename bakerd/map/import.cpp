@@ -7,6 +7,7 @@
 #include "bakerd/map/material_import.h"
 #include "bakerd/map/mesh_import.h"
 #include "bakerd/map/node_import.h"
+#include "bakerd/map/roles_file.h"
 #include "bakerd/map/warning.h"
 
 #include <fmt/format.h>
@@ -58,10 +59,13 @@ tl::expected<Map, std::string> import_files(std::span<const std::string> paths, 
     Map map;
     Shared shared;
     std::vector<FileEnd> ends;
+    RolesFiles roles(files);
     for (const std::string& path : paths) {
-        const auto document = load_document(path, files);
+        auto document = load_document(path, files);
         if (!document)
             return tl::unexpected(document.error());
+        if (auto applied = roles.apply(*document); !applied)
+            return tl::unexpected(applied.error());
         if (auto checked = check_mesh_sizes(*document); !checked)
             return tl::unexpected(checked.error());
         warn_of_extensions(*document, map);
@@ -75,6 +79,8 @@ tl::expected<Map, std::string> import_files(std::span<const std::string> paths, 
     }
     if (auto checked = check_interiors(map, ends); !checked)
         return tl::unexpected(checked.error());
+    for (const std::string& sentence : roles.warnings())
+        warn(map, sentence);
     finish_content(map);
     return map;
 }

@@ -12,8 +12,8 @@
 namespace drtv::map {
 
 // Imports the .gltf and .glb files `paths` into one map. Each file's buffers and images are looked up beside
-// it. The sentence names the file and the element: "island.glb: mesh 3, primitive 0: index 17 is past the 8
-// vertices".
+// it, and so is a roles.json. The sentence names the file and the element: "island.glb: mesh 3, primitive 0:
+// index 17 is past the 8 vertices".
 [[nodiscard]] tl::expected<Map, std::string> import_map(std::span<const std::string> paths,
                                                         const FileSource& files);
 

@@ -163,6 +163,7 @@ struct VolumeNode {
     std::string probe_name;  // interior: `bake_probe`, may be empty
     float spacing_m = 0;     // spacing: `bake_spacing`, the least distance of automatic probes inside
     std::string name;
+    std::string where;  // file and node, for messages
     Digest digest;
 };
 
@@ -198,6 +199,7 @@ struct Map {
     std::vector<Light> lights;
     std::vector<std::string> light_groups;  // names, one of each
     std::vector<std::string> warnings;      // one sentence each
+    std::int64_t ignored_nodes = 0;         // with a bake_role 'ignore' of their own
     // Covers all that can change a bake and nothing else: no names, no order of files, nodes or buffers.
     Digest content;
 };

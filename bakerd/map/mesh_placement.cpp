@@ -136,6 +136,7 @@ Imported MeshPlacer::add_object(MeshPlace place, const NodePurpose& purpose) {
 
 Imported MeshPlacer::add_volume(const MeshPlace& place, VolumeNode volume) {
     volume.name = place.name;
+    volume.where = as_sentence(place.where);
     for (const Primitive& primitive : map_.meshes[place.mesh].primitives) {
         const auto first = static_cast<std::uint32_t>(volume.positions.size());
         for (const glm::vec3& position : primitive.positions) {

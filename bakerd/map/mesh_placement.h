@@ -15,6 +15,7 @@ struct MeshPlace {
     std::uint32_t mesh;  // index into Map::meshes
     glm::dmat4 world_from_object;
     std::string name;
+    std::string where = {};  // of a volume: file and node, for messages
 };
 
 // Nothing of a map lies farther from the origin; what is no number does.

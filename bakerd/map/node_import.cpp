@@ -7,6 +7,7 @@
 #include "bakerd/map/node_role.h"
 #include "bakerd/map/node_transform.h"
 #include "bakerd/map/node_tree.h"
+#include "bakerd/map/property_check.h"
 #include "bakerd/map/warning.h"
 
 #include <fmt/format.h>
@@ -75,6 +76,8 @@ class NodeImporter {
                 if (!ends)
                     groups_.add(pending.node, pending.purpose.light_group);
             }
+            if (pending.purpose.role == NodeRole::ignore && has_role(node))
+                ++state_.map.ignored_nodes;
             pending.hidden = pending.hidden || is_hidden(node);
             if (auto imported = import_node(pending, world_from_node); !imported)
                 return imported;
@@ -82,7 +85,7 @@ class NodeImporter {
                  node.children,
                  {-1, world_from_node, pending.purpose, pending.group_node, pending.hidden});
         }
-        for (const std::string& sentence : misplaced_light_groups(model_))
+        for (const std::string& sentence : unheard_properties(model_))
             warn(state_.map, state_.document.at(sentence));
         groups_.tell_unused([&](int node, const std::string& group) {
             warn(state_.map,
@@ -144,6 +147,8 @@ class NodeImporter {
     }
 
     Imported place(const Pending& pending, MeshPlace place) {
+        if (is_volume(pending.purpose.role) || pending.purpose.spacing_m > 0)
+            place.where = state_.document.at(shown(pending.node));
         if (auto placed = placer_.place(std::move(place), pending.purpose); !placed)
             return fail(pending.node, placed.error());
         return {};

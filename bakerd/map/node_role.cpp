@@ -66,37 +66,22 @@ tl::expected<std::string, std::string> read_light_group(const tinygltf::Value& v
     return name;
 }
 
-bool says_light_group(const tinygltf::Value& extras) {
-    return extras.IsObject() && extras.Has("light_group");
-}
-
 }  // namespace
 
-bool has_light_group(const tinygltf::Node& node) {
-    return says_light_group(node.extras);
+bool has_role(const tinygltf::Node& node) {
+    return node.extras.IsObject() && node.extras.Has("bake_role");
 }
 
-std::vector<std::string> misplaced_light_groups(const tinygltf::Model& model) {
-    std::vector<std::string> sentences;
-    const auto tell_of = [&](const auto& things, const char* kind) {
-        for (const auto& thing : things) {
-            if (says_light_group(thing.extras))
-                sentences.push_back(fmt::format(
-                    "the {} '{}' says light_group, which counts on nodes alone", kind, thing.name));
-        }
-    };
-    tell_of(model.lights, "light");
-    tell_of(model.meshes, "mesh");
-    tell_of(model.materials, "material");
-    return sentences;
+bool has_light_group(const tinygltf::Node& node) {
+    return node.extras.IsObject() && node.extras.Has("light_group");
 }
 
 tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePurpose& purpose) {
     const tinygltf::Value& extras = node.extras;
     if (!extras.IsObject())
         return {};
-    const bool has_role = extras.Has("bake_role");
-    if (has_role) {
+    const bool says_role = has_role(node);
+    if (says_role) {
         if (auto read = read_role(extras.Get("bake_role"), purpose.role); !read)
             return read;
         purpose.spacing_m = 0;
@@ -117,11 +102,11 @@ tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePur
         const auto spacing_m = read_spacing(extras.Get("bake_spacing"));
         if (!spacing_m)
             return tl::unexpected(spacing_m.error());
-        if (has_role && purpose.role != NodeRole::fixed && purpose.role != NodeRole::interior)
+        if (says_role && purpose.role != NodeRole::fixed && purpose.role != NodeRole::interior)
             return tl::unexpected(
                 std::string("bake_spacing goes with bake_role 'static' or 'interior', or alone"));
         purpose.spacing_m = *spacing_m;
-        if (!has_role && purpose.role != NodeRole::interior)
+        if (!says_role && purpose.role != NodeRole::interior)
             purpose.role = NodeRole::spacing;
     }
     return {};

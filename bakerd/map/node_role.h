@@ -4,7 +4,6 @@
 #include <tiny_gltf.h>
 
 #include <string>
-#include <vector>
 
 #include <tl/expected.hpp>
 
@@ -33,12 +32,11 @@ struct NodePurpose {
 // range or does not go with the others; the sentence does not name the node.
 [[nodiscard]] tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePurpose& purpose);
 
+// Whether it says `bake_role` itself.
+[[nodiscard]] bool has_role(const tinygltf::Node& node);
+
 // Whether it says `light_group` itself.
 [[nodiscard]] bool has_light_group(const tinygltf::Node& node);
-
-// A sentence for each light, mesh and material that says it in its place: Blender keeps properties of a
-// lamp's or a mesh's data apart from those of its node.
-[[nodiscard]] std::vector<std::string> misplaced_light_groups(const tinygltf::Model& model);
 
 [[nodiscard]] constexpr bool is_volume(NodeRole role) {
     return role == NodeRole::no_probes || role == NodeRole::interior || role == NodeRole::spacing;

@@ -1,5 +1,6 @@
 #include "bakerd/service/names.h"
 #include "bakerd/service/services.h"
+#include "map_files/limits.h"
 
 #include <fmt/format.h>
 
@@ -7,10 +8,9 @@ namespace drtv::service {
 namespace {
 
 constexpr int max_blobs_a_request = 100000;
-constexpr std::int64_t max_blob_bytes = (std::int64_t{1} << 31) - 1;
 
 store::Result<map::Digest> checked(const v1::Blob& blob) {
-    if (blob.size_bytes() < 0 || blob.size_bytes() > max_blob_bytes) {
+    if (blob.size_bytes() < 0 || blob.size_bytes() > map_files::max_file_bytes) {
         return store::fail(store::ErrorCode::invalid_argument,
                            fmt::format("a blob of {} bytes is over the limit of 2 GiB", blob.size_bytes()));
     }

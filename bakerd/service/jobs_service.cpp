@@ -50,7 +50,7 @@ void fill(const farm::JobView& view, v1::Job& out) {
         out.mutable_region()->set_x1(region->x1);
         out.mutable_region()->set_y1(region->y1);
     }
-    out.set_state(to_proto(row.state));
+    out.set_state(view.waiting ? v1::Job::WAITING : to_proto(row.state));
     out.set_error(row.error);
     out.set_sectors_total(row.sectors_total);
     out.set_sectors_done(row.sectors_done);

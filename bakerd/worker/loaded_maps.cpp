@@ -1,6 +1,7 @@
 #include "bakerd/worker/loaded_maps.h"
 
 #include "bakerd/map/import.h"
+#include "bakerd/map/survey.h"
 #include "bakerd/store/manifest.h"
 
 namespace drtv::worker {
@@ -9,24 +10,15 @@ namespace {
 // The map at work and the one before: an undo finds its scene still there.
 constexpr std::size_t kept_maps = 2;
 
-std::int64_t triangle_count(const map::Map& map) {
-    std::size_t count = 0;
-    for (const map::Object& object : map.objects) {
-        for (const map::Primitive& primitive : map.meshes[object.mesh].primitives)
-            count += primitive.triangles.size();
-    }
-    return static_cast<std::int64_t>(count);
-}
-
-MapSummary summary_of(const bake::World& world, const Digest& inventory) {
+MapSummary summary_of(const bake::World& world, const map::Survey& survey, const Digest& inventory) {
     const map::Map& map = world.map();
     MapSummary summary;
     summary.content = map.content;
     summary.inventory = inventory;
     summary.sectors = world.sectors();
-    summary.object_count = static_cast<std::int64_t>(map.objects.size());
-    summary.triangle_count = triangle_count(map);
-    summary.warnings = map.warnings;
+    summary.survey = survey;
+    summary.warnings = map::doubts_about(survey);
+    summary.warnings.insert(summary.warnings.end(), map.warnings.begin(), map.warnings.end());
     summary.warnings.insert(summary.warnings.end(), world.warnings().begin(), world.warnings().end());
     return summary;
 }
@@ -62,6 +54,9 @@ LoadResult LoadedMaps::load(const Digest& digest) const {
     auto imported = map::import_map(manifest->roots, store::manifest_source(*manifest, store_));
     if (!imported)
         return failed(imported.error(), false);
+    const map::Survey survey = map::survey_of(*imported);
+    if (auto checked = map::check_survey(survey); !checked)
+        return failed(checked.error(), false);
     auto world = bake::World::open(device_, std::make_shared<const map::Map>(std::move(*imported)), shelf_);
     if (!world)
         return failed(world.error(), false);
@@ -70,7 +65,7 @@ LoadResult LoadedMaps::load(const Digest& digest) const {
     if (!inventory_digest)
         return failed(inventory_digest.error().message, true);
     return LoadedMap{*world,
-                     summary_of(**world, *inventory_digest),
+                     summary_of(**world, survey, *inventory_digest),
                      inventory,
                      std::make_shared<ChangesSince>(inventory, store_)};
 }

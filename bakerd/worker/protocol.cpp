@@ -57,12 +57,15 @@ void fields(auto& codec, Is<AssessRequest> auto& request) {
     codec("sectors", request.sectors);
 }
 
+void fields(auto& codec, Is<map::Survey> auto& survey) {
+    map::visit_numbers(codec, survey);
+}
+
 void fields(auto& codec, Is<MapSummary> auto& summary) {
     codec("content", summary.content);
     codec("inventory", summary.inventory);
     codec("sectors", summary.sectors);
-    codec("object_count", summary.object_count);
-    codec("triangle_count", summary.triangle_count);
+    codec("survey", summary.survey);
     codec("warnings", summary.warnings);
 }
 

@@ -4,6 +4,7 @@
 #include "bakerd/map/digest.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/map/map.h"
+#include "bakerd/map/survey.h"
 #include "bakerd/reuse/verdict.h"
 #include "settings/bake_settings.h"
 
@@ -54,8 +55,7 @@ struct MapSummary {
     Digest content;
     Digest inventory;                            // a blob
     std::vector<map::SectorCoordinate> sectors;  // with ground, by (j, i)
-    std::int64_t object_count = 0;
-    std::int64_t triangle_count = 0;
+    map::Survey survey;
     std::vector<std::string> warnings;  // one sentence each
 };
 

@@ -1,7 +1,7 @@
 #include "parse.h"
 
 #include "report.h"
-#include "suggestion.h"
+#include "spelling/suggestion.h"
 
 #include <algorithm>
 #include <string>
@@ -53,19 +53,21 @@ std::string sentence_of(const CLI::App& app, const CLI::ParseError& error) {
     const std::optional<std::string> unknown = unknown_word(app);
     const bool lacks_command = chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
     if (!unknown && lacks_command)
-        return with_hint("a command is required", "", more);
+        return spelling::with_hint("a command is required", "", more);
     if (!unknown)
-        return with_hint(prefix + error.what(), "", more);
+        return spelling::with_hint(prefix + error.what(), "", more);
     if (unknown->starts_with("-")) {
         const std::string option = unknown->substr(0, unknown->find('='));
-        return with_hint(
-            prefix + "there is no option \"" + option + "\"", suggestion(option, options_of(&command)), more);
+        return spelling::with_hint(prefix + "there is no option \"" + option + "\"",
+                                   spelling::suggestion(option, options_of(&command)),
+                                   more);
     }
     if (chosen.empty()) {
-        return with_hint(
-            "there is no command \"" + *unknown + "\"", suggestion(*unknown, commands_of(app)), more);
+        return spelling::with_hint("there is no command \"" + *unknown + "\"",
+                                   spelling::suggestion(*unknown, commands_of(app)),
+                                   more);
     }
-    return with_hint(prefix + "\"" + *unknown + "\" is one argument too many", "", more);
+    return spelling::with_hint(prefix + "\"" + *unknown + "\" is one argument too many", "", more);
 }
 
 }  // namespace

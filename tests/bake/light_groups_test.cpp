@@ -242,10 +242,12 @@ TEST(LightGroups, InExtrasOfALightAMeshOrAMaterialAreWarnedOf) {
     const auto map = b.import();
     ASSERT_TRUE(map) << map.error();
     EXPECT_EQ(map->warnings,
-              (std::vector<std::string>{
-                  "map.gltf: the light 'bulb' says light_group, which counts on nodes alone",
-                  "map.gltf: the mesh 'meadow' says light_group, which counts on nodes alone",
-                  "map.gltf: the material 'grass' says light_group, which counts on nodes alone"}));
+              (std::vector<std::string>{"map.gltf: the light 'bulb' says light_group, which counts on nodes "
+                                        "alone: set it on the object, not on its data",
+                                        "map.gltf: the mesh 'meadow' says light_group, which counts on nodes "
+                                        "alone: set it on the object, not on its data",
+                                        "map.gltf: the material 'grass' says light_group, which counts on "
+                                        "nodes alone: set it on the objects that wear the material"}));
     EXPECT_TRUE(map->light_groups.empty());
 }
 

@@ -1,8 +1,8 @@
-#include "cli/suggestion.h"
+#include "spelling/suggestion.h"
 
 #include <gtest/gtest.h>
 
-namespace drtv::cli {
+namespace drtv::spelling {
 namespace {
 
 TEST(EditDistance, CountsLettersLeftOutPutInExchangedAndSwapped) {
@@ -32,4 +32,4 @@ TEST(Suggestion, IsTheNearestWordOrNone) {
 }
 
 }  // namespace
-}  // namespace drtv::cli
+}  // namespace drtv::spelling

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import json
 import os
+import pty
 import signal
 import sqlite3
 import struct
@@ -110,6 +111,11 @@ def with_lamps(path, groups):
     return path
 
 
+def last_object(done):
+    """Of what a program printed under --json."""
+    return json.loads(done.stdout.splitlines()[-1])
+
+
 def has_ended(pid):
     try:
         with open(f"/proc/{pid}/stat", encoding="utf-8") as file:
@@ -202,7 +208,7 @@ class Baking(FarmTest):
         island = self.island(100)
         first = self.pulled(daemon, island, *REGION, *FEW_RAYS)
         again = self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS)
-        job = json.loads(again.stdout)
+        job = last_object(again)
         self.assertEqual(
             (job["state"], job["sectors_cached"], job["sectors_total"]), ("succeeded", len(first), len(first))
         )
@@ -224,7 +230,7 @@ class Baking(FarmTest):
         document["scenes"][document.get("scene", 0)]["nodes"].reverse()
         with open(island, "w", encoding="utf-8") as file:
             json.dump(document, file)
-        job = json.loads(self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS).stdout)
+        job = last_object(self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS))
         self.assertEqual(job["sectors_cached"], job["sectors_total"])
 
     def dumps(self, daemon, *arguments, name="pulled"):
@@ -353,6 +359,100 @@ class Import(FarmTest):
         self.assertIn("2 sectors", done.stdout)
         self.assertIn("east.gltf is named twice", done.stderr)
 
+    def test_a_submit_first_says_what_was_understood(self):
+        daemon = self.farm.daemon()
+        path = with_lamps(write_map(self.farm.path("map.gltf"), lawn=LAWN, wall=WALL), 2)
+        done = self.farm.bake(daemon, "submit", path, *FEW_RAYS)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(
+            done.stdout.splitlines()[:3],
+            ["the map: 30 m x 30 m, 16 m high; 1 sector", "  2 static objects, 4 triangles", "  2 lamps"],
+        )
+        done = self.farm.bake(daemon, "--json", "plan", path, *FEW_RAYS)
+        told = json.loads(done.stdout.splitlines()[0])
+        self.assertEqual(
+            (told["kind"], told["sectors"], told["low"], told["high"], told["lamps"], told["suns"]),
+            ("map", 1, [1, 1, 0], [31, 31, 16], 2, 0),
+        )
+
+    def test_ground_that_faces_down_and_open_volumes_are_refused_with_a_remedy(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), terrain=LAWN[::-1])
+        self.assert_sentence(
+            self.farm.bake(daemon, "submit", path),
+            "no surface of the map faces up",
+            "is it on its side, or inside out?",
+            status=INVALID,
+        )
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN, hall=WALL)
+        with open(path, encoding="utf-8") as file:
+            document = json.load(file)
+        document["nodes"][1]["extras"] = {"bake_role": "interior"}
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(document, file)
+        self.assert_sentence(
+            self.farm.bake(daemon, "submit", path),
+            "map.gltf: node 1 ('hall'): its mesh, of the bake_role 'interior', is open",
+            "close its holes",
+            status=INVALID,
+        )
+        self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
+
+    def test_roles_can_stand_in_a_file_beside_the_map(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map/map.gltf"), lawn=LAWN, wall=WALL)
+        with open(self.farm.path("map/roles.json"), "w", encoding="utf-8") as file:
+            json.dump({"w*": "vegetation", "palm": "vegetation"}, file)
+        done = self.farm.bake(daemon, "plan", path, *FEW_RAYS)
+        self.assertIn("1 static object, 1 of vegetation", done.stdout)
+        self.assertIn("roles.json: 'palm' matches the name of no node beside it", done.stderr)
+        os.unlink(self.farm.path("map/roles.json"))
+        self.assertIn("2 static objects", self.farm.bake(daemon, "plan", path, *FEW_RAYS).stdout)
+
+    def test_a_job_too_large_to_be_meant_is_asked_for(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), lawn=[(x * 120, y * 120, z) for x, y, z in LAWN])
+        done = self.farm.bake(daemon, "submit", path, *FEW_RAYS)
+        self.assert_sentence(done, "the job bakes 3,364 sectors", "--yes", status=USAGE)
+        for answer, number in ((b"n\n", 0), (b"y\n", 1)):
+            status = self.on_terminal(daemon, answer, "submit", path, *FEW_RAYS)
+            self.assertEqual(status, 0 if number else USAGE)
+            self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1 + number)
+        done = self.farm.bake(daemon, "submit", path, *FEW_RAYS, "--yes")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.farm.bake(daemon, "submit", path, *FEW_RAYS, "--region", " 200, 200 ,264 ,264 ")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def on_terminal(self, daemon, answer, *arguments):
+        """The exit status of bake on a terminal where somebody types the answer."""
+        master, slave = pty.openpty()
+        try:
+            process = subprocess.Popen(
+                [os.path.join(OPTIONS.bin, "bake"), "--server", daemon.address, *arguments],
+                stdin=slave,
+                stdout=subprocess.DEVNULL,
+                stderr=slave,
+            )
+            seen = b""
+            while b"go on? [y/N]" not in seen:
+                seen += os.read(master, 4096)
+            os.write(master, answer)
+            return process.wait(timeout=60)
+        finally:
+            os.close(master)
+            os.close(slave)
+
+    def test_contradictions_on_the_command_line_are_told(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        done = self.farm.bake(daemon, "plan", path, *FEW_RAYS, "--set", "rays=32")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("rays is set twice; the last one counts: rays=32", done.stderr)
+        done = self.farm.bake(daemon, "plan", path, "--exact", "--set", "tolerance=0.01")
+        self.assert_sentence(done, "--exact", "tolerance", status=USAGE)
+        done = self.farm.bake(daemon, "plan", path, "--exact", "--set", "tolerance=0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
 
 class Determinism(FarmTest):
     def test_threads_daemons_and_sector_order_do_not_matter(self):
@@ -392,7 +492,7 @@ class Crashes(FarmTest):
         calm = self.farm.daemon("calm")
         expected = self.pulled(calm, island, *REGION, *FEW_RAYS, name="expected")
         daemon = self.farm.daemon("stormy")
-        submitted = json.loads(self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS).stdout)
+        submitted = last_object(self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS))
         self.assertEqual(submitted["state"], "running")
 
         def done():
@@ -769,7 +869,7 @@ class Incremental(FarmTest):
         """Submits and pulls; gives the job at its end."""
         done = self.farm.bake(daemon, "--json", "submit", *arguments, "--pull", self.farm.path(name))
         self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
-        return self.farm.job(daemon, json.loads(done.stdout.splitlines()[-1])["job"])
+        return self.farm.job(daemon, last_object(done)["job"])
 
     def test_edits_bake_what_they_changed_and_no_byte_less(self):
         """A few of what edits.py does by the hundred."""
@@ -802,12 +902,12 @@ class Incremental(FarmTest):
         daemon = self.farm.daemon()
         edited = map_edits.EditableMap(self.island())
         first = edited.write(self.farm.path("first"))
-        fresh = json.loads(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS).stdout)
+        fresh = last_object(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS))
         self.assertEqual((fresh["hits"], fresh["rebakes"]), (0, 35))
         self.assertEqual(fresh["sectors"][0]["reason"], "it was not baked with these settings before")
         self.assertEqual(self.job_of(daemon, first, *REGION, *FEW_RAYS)["sectors_cached"], 0)
         self.assertEqual(
-            json.loads(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS).stdout)["hits"], 35
+            last_object(self.farm.bake(daemon, "--json", "plan", first, *REGION, *FEW_RAYS))["hits"], 35
         )
 
         number = edited.plants()[0]
@@ -936,7 +1036,7 @@ class RealMaps(FarmTest):
             "--wait",
         )
         self.assertEqual(done.returncode, 0, path + ": " + done.stderr)
-        return json.loads(done.stdout.splitlines()[-1])
+        return last_object(done)
 
     def test_models_and_scenes_bake(self):
         for folder in (

@@ -88,7 +88,7 @@ void answer(std::uint64_t id, const InspectRequest& request) {
         std::raise(SIGKILL);
     MapSummary inspected;
     inspected.content = request.manifest;
-    inspected.object_count = 5;
+    inspected.survey.static_objects = 5;
     say({id, inspected});
 }
 

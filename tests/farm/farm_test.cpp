@@ -134,7 +134,8 @@ TEST_F(FarmTest, AMapIsImportedOnceAndFoundAgain) {
     const auto map = create(ground_gltf(128));
     ASSERT_TRUE(map) << map.error().message;
     EXPECT_EQ(map->summary.sectors, (std::vector<map::SectorCoordinate>{{0, 0}, {1, 0}, {0, 1}, {1, 1}}));
-    EXPECT_EQ(std::tuple(map->summary.object_count, map->summary.triangle_count), std::tuple(1, 2));
+    EXPECT_EQ(std::tuple(map->summary.survey.static_objects, map->summary.survey.triangles),
+              std::tuple(1, 2));
     EXPECT_EQ(create(ground_gltf(128))->id, map->id);
     EXPECT_EQ(farm->get_map(map->id)->summary.content, map->summary.content);
     EXPECT_NE(create(ground_gltf(128, 1))->id, map->id);

@@ -149,14 +149,13 @@ TEST_P(KeptSchemas, KeepResultsForTheirMapAndThoseThatReusedThem) {
                   std::tuple(JobState::succeeded, 4, 4));
         EXPECT_GT(job->row.ended_ms, 1700000000000);
         EXPECT_EQ(job->row.settings.bake.rays, id == 3 ? 65536u : 16u);
-        const auto map =
-            read(*database, [&](Connection& connection) { return find_map(connection, job->row.manifest); });
-        ASSERT_TRUE(map);
-        EXPECT_EQ(map->sectors, (std::vector<map::SectorCoordinate>{{0, 0}, {1, 0}, {0, 1}, {1, 1}}));
+        // It has to be looked at again.
+        EXPECT_FALSE(
+            read(*database, [&](Connection& connection) { return find_map(connection, job->row.manifest); }));
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Versions, KeptSchemas, testing::Values(4, 5));
+INSTANTIATE_TEST_SUITE_P(Versions, KeptSchemas, testing::Values(4, 5, 6));
 
 // Their records are of another kind: they are found no more, and leave the cache in their time.
 TEST_F(LastSchemas, ResultsOfTheThirdAreGivenUp) {

@@ -113,7 +113,7 @@ placement::ClosedVolume box_volume(const glm::dvec3& low, const glm::dvec3& high
                                                    {2, 4, 6},
                                                    {1, 3, 5},
                                                    {3, 7, 5}}};
-    return placement::ClosedVolume::make("box", corners, triangles).value();
+    return placement::ClosedVolume::make(corners, triangles).value();
 }
 
 std::int64_t squared_distance(const Position& a, const Position& b) {

@@ -94,11 +94,16 @@ TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
     const auto failure = std::get<RequestFailure>(round(RequestFailure{"two\nlines, \"quotes\"", true}));
     EXPECT_EQ(failure.sentence, "two\nlines, \"quotes\"");
     EXPECT_TRUE(failure.may_retry);
-    const auto inspected = std::get<MapSummary>(round(MapSummary{
-        some_digest, map::digest_of(test::bytes_of("inventory")), {{1, -2}, {3, 4}}, 5, 6, {"warned"}}));
+    const auto inspected =
+        std::get<MapSummary>(round(MapSummary{some_digest,
+                                              map::digest_of(test::bytes_of("inventory")),
+                                              {{1, -2}, {3, 4}},
+                                              {.low = {1, 2, 3}, .static_objects = 5, .down_m2 = 0.25},
+                                              {"warned"}}));
     EXPECT_EQ(inspected.content, some_digest);
     EXPECT_EQ(inspected.sectors, (std::vector<map::SectorCoordinate>{{1, -2}, {3, 4}}));
-    EXPECT_EQ(std::tuple(inspected.object_count, inspected.triangle_count), std::tuple(5, 6));
+    EXPECT_EQ(std::tuple(inspected.survey.low.z, inspected.survey.static_objects, inspected.survey.down_m2),
+              std::tuple(3, 5, 0.25));
     EXPECT_EQ(inspected.warnings, std::vector<std::string>{"warned"});
 }
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace drtv::cli {
+namespace drtv::spelling {
 
 // Letters left out, put in, exchanged, or swapped with their neighbour, that lead from one word to the other
 // (Damerau and Levenshtein, in the form of the optimal string alignment).
@@ -20,4 +20,4 @@ namespace drtv::cli {
                                     const std::string& suggested,
                                     const std::string& more);
 
-}  // namespace drtv::cli
+}  // namespace drtv::spelling

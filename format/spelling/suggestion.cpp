@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace drtv::cli {
+namespace drtv::spelling {
 
 std::size_t edit_distance(std::string_view from, std::string_view to) {
     // Row n: from the first n letters of `from`.
@@ -42,4 +42,4 @@ std::string with_hint(const std::string& sentence, const std::string& suggested,
     return sentence + suggested + (suggested.empty() ? "; " : " ") + more;
 }
 
-}  // namespace drtv::cli
+}  // namespace drtv::spelling
