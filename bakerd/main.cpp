@@ -1,4 +1,5 @@
 // bakerd: parse, wire, run.
+#include "bakerd/bake/settings_key.h"
 #include "bakerd/farm/farm.h"
 #include "bakerd/picture/render_request.h"
 #include "bakerd/service/server.h"
@@ -63,7 +64,8 @@ cli::Result<cli::ExitCode> serve(const ServeOptions& options) {
          options.cache_bytes});
     if (!farm)
         return cli::fail(cli::exit_unreadable, farm.error().message);
-    auto server = service::Server::start(**farm, options.listen, options.tls);
+    auto server = service::Server::start(
+        **farm, options.listen, options.tls, {std::string(trace::isa_class()), bake::baker_version});
     if (!server)
         return cli::fail(cli::exit_unreadable, server.error());
     spdlog::info("bakerd listens on {}, keeps its data in {}, bakes on {} threads",

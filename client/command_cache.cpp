@@ -55,14 +55,16 @@ void print_text(const v1::CacheState& state, std::optional<std::int64_t> removed
 
 cli::Result<cli::ExitCode> run_cache(ServerConnection& connection, bool clear) {
     v1::CacheState state;
-    grpc::ClientContext context;
-    if (const grpc::Status status = connection.cache->GetCache(&context, {}, &state); !status.ok())
+    if (const grpc::Status status =
+            call(*connection.cache, &v1::Cache::Stub::GetCache, v1::GetCacheRequest(), state);
+        !status.ok())
         return tl::unexpected(connection.failure(status));
     std::optional<std::int64_t> removed;
     if (clear) {
         const std::int64_t results_before = state.results();
-        grpc::ClientContext clearing;
-        if (const grpc::Status status = connection.cache->ClearCache(&clearing, {}, &state); !status.ok())
+        if (const grpc::Status status =
+                call(*connection.cache, &v1::Cache::Stub::ClearCache, v1::ClearCacheRequest(), state);
+            !status.ok())
             return tl::unexpected(connection.failure(status));
         // Others may bake in the meantime.
         removed = std::max<std::int64_t>(results_before - state.results(), 0);

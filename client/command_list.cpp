@@ -53,9 +53,9 @@ cli::Result<cli::ExitCode> run_list(ServerConnection& connection) {
     const bool as_json = connection.options.json;
     v1::ListJobsRequest request;
     for (;;) {
-        grpc::ClientContext context;
         v1::ListJobsResponse response;
-        if (const grpc::Status status = connection.jobs->ListJobs(&context, request, &response); !status.ok())
+        if (const grpc::Status status = call(*connection.jobs, &v1::Jobs::Stub::ListJobs, request, response);
+            !status.ok())
             return tl::unexpected(connection.failure(status));
         const bool is_first_page = request.page_token().empty();
         if (!as_json && is_first_page)
@@ -83,9 +83,9 @@ cli::Result<cli::ExitCode> run_status(ServerConnection& connection, const std::s
 cli::Result<cli::ExitCode> run_cancel(ServerConnection& connection, const std::string& job) {
     v1::CancelJobRequest request;
     request.set_name(job_resource(job));
-    grpc::ClientContext context;
     v1::Job cancelled;
-    if (const grpc::Status status = connection.jobs->CancelJob(&context, request, &cancelled); !status.ok())
+    if (const grpc::Status status = call(*connection.jobs, &v1::Jobs::Stub::CancelJob, request, cancelled);
+        !status.ok())
         return tl::unexpected(connection.failure(status));
     print(connection, cancelled);
     return cli::exit_done;

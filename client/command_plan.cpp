@@ -128,9 +128,9 @@ cli::Result<cli::ExitCode> run_plan(ServerConnection& connection,
         return tl::unexpected(prepared.error());
     v1::PlanJobRequest request;
     *request.mutable_job() = prepared->job;
-    grpc::ClientContext context;
     v1::Plan plan;
-    if (const grpc::Status status = connection.jobs->PlanJob(&context, request, &plan); !status.ok())
+    if (const grpc::Status status = call(*connection.jobs, &v1::Jobs::Stub::PlanJob, request, plan);
+        !status.ok())
         return tl::unexpected(connection.failure(status));
     for (const std::string& warning : plan.warnings())
         cli::warn(warning);

@@ -2,23 +2,26 @@
 
 #include "client/folder_pull.h"
 #include "client/job_end.h"
-#include "client/whole_file.h"
+#include "format/folder/whole_file.h"
 
 namespace drtv::client {
 
 cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
                                     const std::string& job,
-                                    const std::string& folder) {
-    if (auto made = make_folder(folder); !made)
+                                    const std::string& folder,
+                                    bool replace) {
+    if (auto made = folder::make_folder(folder); !made)
         return tl::unexpected(made.error());
     // As it is before the files are asked for: what ends in the meantime is not missed then.
     const auto found = get_job(connection, job);
     if (!found)
         return tl::unexpected(found.error());
-    FolderPull pull(connection, job, folder);
-    if (auto pulled = pull.pull(); !pulled)
+    auto pull = FolderPull::open(connection, job, folder, replace);
+    if (!pull)
+        return tl::unexpected(pull.error());
+    if (auto pulled = pull->finish(); !pulled)
         return tl::unexpected(pulled.error());
-    pull.report();
+    pull->report();
     return end_of(*found);
 }
 

@@ -10,6 +10,7 @@ namespace drtv::client {
 // Makes the folder when it is missing. Gives the exit status.
 cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
                                     const std::string& job,
-                                    const std::string& folder);
+                                    const std::string& folder,
+                                    bool replace);
 
 }  // namespace drtv::client

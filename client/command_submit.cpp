@@ -47,22 +47,24 @@ void print_submitted(const ServerConnection& connection, const v1::Job& job) {
 cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
                                           const std::string& job,
                                           const SubmitOptions& options) {
-    FolderPull pull(connection, job, options.pull_folder);
+    auto pull = FolderPull::open(connection, job, options.pull_folder, options.replace);
+    if (!pull)
+        return tl::unexpected(pull.error());
     cli::Result<void> pulled;
     std::int64_t done = 0;
     const auto pull_new = [&](const v1::Job& now) {
         if (!pulled || now.sectors_done() == done)
             return;
         done = now.sectors_done();
-        pulled = pull.pull();
+        pulled = pull->pull();
     };
     const auto watched = run_watch(connection, job, options.timeout_s, pull_new);
     if (!watched && watched.error().code == cli::exit_interrupted)
         return watched;
     if (pulled)
-        pulled = pull.pull();
+        pulled = pull->finish();
     if (pulled)
-        pull.report();
+        pull->report();
     // How the job ended says more than what became of its files.
     if (!watched && !pulled)
         cli::warn(pulled.error().sentence);
@@ -82,9 +84,9 @@ cli::Result<cli::ExitCode> run_submit(ServerConnection& connection, const Submit
     v1::CreateJobRequest request;
     *request.mutable_job() = prepared->job;
     request.set_request_id(random_id());
-    grpc::ClientContext context;
     v1::Job created;
-    if (const grpc::Status status = connection.jobs->CreateJob(&context, request, &created); !status.ok())
+    if (const grpc::Status status = call(*connection.jobs, &v1::Jobs::Stub::CreateJob, request, created);
+        !status.ok())
         return tl::unexpected(connection.failure(status));
 
     const std::string number = job_number(created);

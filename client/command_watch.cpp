@@ -102,7 +102,6 @@ cli::Result<cli::ExitCode> run_watch(ServerConnection& connection,
                                      const std::string& argument,
                                      double timeout_s,
                                      const OnProgress& progressed) {
-    catch_interrupt();
     const std::string name = job_resource(argument);
     const std::string number = name.substr(name.find('/') + 1);
     const std::string come_back = "come back with: bake watch " + number;

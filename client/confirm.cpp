@@ -32,10 +32,9 @@ cli::Result<void> confirm_size(ServerConnection& connection, const PreparedJob& 
         return {};
     v1::PlanJobRequest request;
     *request.mutable_job() = prepared.job;
-    grpc::ClientContext context;
-    const InterruptGuard guard(context);
     v1::Plan plan;
-    if (const grpc::Status status = connection.jobs->PlanJob(&context, request, &plan); !status.ok())
+    if (const grpc::Status status = call(*connection.jobs, &v1::Jobs::Stub::PlanJob, request, plan);
+        !status.ok())
         return tl::unexpected(connection.failure(status));
     const std::int64_t to_bake = std::ranges::count(
         plan.sectors(), v1::PlannedSector::REBAKE, [](const auto& sector) { return sector.verdict(); });

@@ -1,150 +1,238 @@
 #include "client/folder_pull.h"
 
+#include "client/folder_lock.h"
+#include "client/folder_manifest.h"
+#include "client/interrupt.h"
+#include "client/job_end.h"
+#include "client/job_text.h"
 #include "client/number_text.h"
-#include "client/progress.h"
-#include "client/sha256.h"
-#include "client/whole_file.h"
+#include "client/sector_stream.h"
+#include "format/cli/report.h"
+#include "format/folder/sha256.h"
+#include "format/folder/whole_file.h"
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 
 namespace drtv::client {
 namespace {
 
-std::string file_name(const v1::SectorCoordinate& sector) {
-    return fmt::format("sector_{}_{}.drtv", sector.i(), sector.j());
+namespace fs = std::filesystem;
+
+// How long a daemon may be away (restarting) before a pull gives up.
+constexpr std::chrono::seconds patience{60};
+
+std::string path_of(const std::string& folder, const folder::SectorPlace& place) {
+    return folder + "/" + folder::sector_file_name(place.second, place.first);
 }
 
-class Puller {
-  public:
-    Puller(ServerConnection& connection, std::string folder)
-        : connection_(connection), folder_(std::move(folder)) {}
+bool is_file(const std::string& path, const std::string& sha256, std::int64_t size_bytes) {
+    std::error_code code;
+    const std::uintmax_t found = fs::file_size(path, code);
+    if (code || std::cmp_not_equal(found, size_bytes))
+        return false;
+    return folder::sha256_of_file(path).value_or("") == sha256;
+}
 
-    cli::Result<void> run(const v1::PullSectorsRequest& request) {
-        grpc::ClientContext context;
-        const auto reader = connection_.sectors->PullSectors(&context, request);
-        v1::PullSectorsResponse message;
-        cli::Result<void> result;
-        while (result && reader->Read(&message)) {
-            if (message.has_sector()) {
-                sector_ = message.sector();
-                bytes_.clear();
-            }
-            bytes_ += message.data();
-            if (static_cast<std::int64_t>(bytes_.size()) >= sector_.size_bytes())
-                result = keep(request.sectors_size());
-        }
-        if (!result) {
-            context.TryCancel();
-            return result;
-        }
-        if (const grpc::Status status = reader->Finish(); !status.ok())
-            return tl::unexpected(connection_.failure(status));
-        return {};
+// Of writes that a kill or a power cut broke off.
+void remove_leftovers(const std::string& folder) {
+    constexpr std::chrono::minutes old{10};
+    std::error_code code;
+    const auto now = fs::file_time_type::clock::now();
+    for (const auto& entry : fs::directory_iterator(folder, code)) {
+        const std::string name = entry.path().filename().string();
+        const bool is_part = name.starts_with("sector") && name.find(".part") != std::string::npos;
+        std::error_code ignored;
+        if (is_part && now - entry.last_write_time(ignored) > old)
+            fs::remove(entry.path(), ignored);
     }
-
-  private:
-    cli::Result<void> keep(int total) {
-        const std::string path = folder_ + "/" + file_name(sector_.coordinate());
-        if (sha256_of_text(bytes_) != sector_.sha256())
-            return cli::fail(cli::exit_unreadable,
-                             fmt::format("{} arrived damaged; nothing was written", path));
-        if (auto written = write_whole(path, bytes_); !written)
-            return written;
-        ++kept_;
-        const double share = static_cast<double>(kept_) / total;
-        progress_.show(share, fmt::format("pulled {}/{} sector files", kept_, total));
-        return {};
-    }
-
-    ServerConnection& connection_;
-    const std::string folder_;
-    Progress progress_;
-    v1::Sector sector_;
-    std::string bytes_;
-    int kept_ = 0;
-};
+}
 
 }  // namespace
 
-FolderPull::FolderPull(ServerConnection& connection, const std::string& job, std::string folder)
-    : connection_(connection), job_(job_resource(job)), folder_(std::move(folder)) {}
-
-cli::Result<void> FolderPull::pull() {
-    v1::PullSectorsRequest wanted;
-    wanted.set_job(job_);
-    if (auto chosen = choose(wanted); !chosen)
-        return chosen;
-    if (wanted.sectors().empty())
-        return {};
-    Puller puller(connection_, folder_);
-    if (auto pulled = puller.run(wanted); !pulled)
-        return pulled;
-    pulled_ += wanted.sectors_size();
-    return {};
+cli::Result<FolderPull> FolderPull::open(ServerConnection& connection,
+                                         const std::string& job,
+                                         std::string folder,
+                                         bool replace) {
+    auto found = get_job(connection, job);
+    if (!found)
+        return tl::unexpected(found.error());
+    v1::GetMapRequest request;
+    request.set_name(found->map());
+    v1::Map map;
+    if (const grpc::Status status = call(*connection.maps, &v1::Maps::Stub::GetMap, request, map);
+        !status.ok())
+        return tl::unexpected(connection.failure(status));
+    auto earlier = earlier_manifest(folder, map, replace);
+    if (!earlier)
+        return tl::unexpected(earlier.error());
+    FolderPull pull(connection, std::move(*found), std::move(folder));
+    pull.earlier_ = std::move(*earlier);
+    pull.manifest_ = manifest_of(map, pull.job_, connection.server);
+    return pull;
 }
 
-cli::Result<void> FolderPull::choose(v1::PullSectorsRequest& wanted) {
-    unfinished_ = 0;
+cli::Result<void> FolderPull::pull() {
+    auto wanted = missing_files();
+    if (!wanted)
+        return tl::unexpected(wanted.error());
+    return fetch(*wanted);
+}
+
+cli::Result<void> FolderPull::finish() {
+    const auto lock = FolderLock::take(folder_);
+    if (!lock)
+        return tl::unexpected(lock.error());
+    // Another pull may have been here since.
+    looked_at_.clear();
+    manifest_.files.clear();
+    unchanged_ = -pulled_;  // what this pull wrote is not counted as found
+    if (auto pulled = pull(); !pulled)
+        return pulled;
+    leave_or_remove_earlier_files();
+    remove_leftovers(folder_);
+    if (auto synced = folder::sync_folder(folder_); !synced)
+        return synced;
+    return folder::write_whole(folder::manifest_path(folder_), folder::manifest_text(manifest_));
+}
+
+cli::Result<v1::PullSectorsRequest> FolderPull::missing_files() {
+    v1::PullSectorsRequest wanted;
+    wanted.set_job(job_.name());
+    manifest_.unfinished = 0;
+    // One look at the folder is cheaper than one at each file that is not there.
+    names_there_.clear();
+    std::error_code code;
+    for (const auto& entry : fs::directory_iterator(folder_, code))
+        names_there_.insert(entry.path().filename().string());
     v1::ListSectorsRequest request;
-    request.set_job(job_);
+    request.set_job(job_.name());
+    request.set_page_size(2'000);
     for (bool more = true; more;) {
-        grpc::ClientContext context;
         v1::ListSectorsResponse response;
-        const grpc::Status status = connection_.sectors->ListSectors(&context, request, &response);
+        const grpc::Status status =
+            call(*connection_.sectors, &v1::Sectors::Stub::ListSectors, request, response);
         if (!status.ok())
             return tl::unexpected(connection_.failure(status));
-        for (const v1::Sector& sector : response.sectors()) {
-            if (sector.state() != v1::Sector::DONE) {
-                ++unfinished_;
-                continue;
-            }
-            const v1::SectorCoordinate& coordinate = sector.coordinate();
-            const bool is_new = here_.insert({coordinate.i(), coordinate.j()}).second;
-            if (!is_new)
-                continue;
-            if (has_file_of(sector))
-                ++unchanged_;
-            else
-                *wanted.add_sectors() = coordinate;
-        }
+        for (const v1::Sector& sector : response.sectors())
+            note_sector(sector, wanted);
         request.set_page_token(response.next_page_token());
         more = !response.next_page_token().empty();
+    }
+    return wanted;
+}
+
+void FolderPull::note_sector(const v1::Sector& sector, v1::PullSectorsRequest& wanted) {
+    if (sector.state() != v1::Sector::DONE) {
+        ++manifest_.unfinished;
+        return;
+    }
+    const folder::SectorPlace place(sector.coordinate().j(), sector.coordinate().i());
+    manifest_.files[place] = {sector.sha256(), sector.size_bytes(), manifest_.map};
+    if (!looked_at_.insert(place).second)
+        return;
+    if (has_file_of(sector))
+        ++unchanged_;
+    else
+        *wanted.add_sectors() = sector.coordinate();
+}
+
+cli::Result<void> FolderPull::fetch(const v1::PullSectorsRequest& wanted) {
+    v1::PullSectorsRequest left = wanted;
+    auto last_progress = std::chrono::steady_clock::now();
+    bool told = false;
+    while (!left.sectors().empty()) {
+        std::set<folder::SectorPlace> written;
+        const auto streamed = stream_sectors(connection_, left, folder_, [&](const v1::Sector& sector) {
+            written.emplace(sector.coordinate().j(), sector.coordinate().i());
+            ++pulled_;
+        });
+        if (streamed)
+            return {};
+        const auto now = std::chrono::steady_clock::now();
+        if (!written.empty())
+            last_progress = now;
+        if (streamed.error().code != cli::exit_server || now - last_progress > patience)
+            return streamed;
+        if (!told)
+            cli::note(fmt::format(
+                "lost bakerd at {}; trying again for {} s", connection_.options.server, patience.count()));
+        told = true;
+        v1::PullSectorsRequest rest;
+        rest.set_job(left.job());
+        for (const v1::SectorCoordinate& place : left.sectors()) {
+            if (!written.contains({place.j(), place.i()}))
+                *rest.add_sectors() = place;
+        }
+        left = std::move(rest);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
     }
     return {};
 }
 
 bool FolderPull::has_file_of(const v1::Sector& sector) const {
-    const std::string path = folder_ + "/" + file_name(sector.coordinate());
-    std::error_code code;
-    const auto size_bytes = static_cast<std::int64_t>(std::filesystem::file_size(path, code));
-    if (code || size_bytes != sector.size_bytes())
-        return false;
-    return sha256_of_file(path).value_or("") == sector.sha256();
+    const std::string name = folder::sector_file_name(sector.coordinate().i(), sector.coordinate().j());
+    return names_there_.contains(name) && is_file(folder_ + "/" + name, sector.sha256(), sector.size_bytes());
+}
+
+// A job of a region says nothing of the sectors around it: their files stay, and the manifest says of which
+// map.
+void FolderPull::leave_or_remove_earlier_files() {
+    if (!earlier_)
+        return;
+    const bool stays =
+        folder::are_of_one_map(*earlier_, manifest_) && (job_.has_region() || manifest_.unfinished > 0);
+    std::int64_t changed = 0;
+    for (const auto& [place, file] : earlier_->files) {
+        if (manifest_.files.contains(place))
+            continue;
+        const std::string path = path_of(folder_, place);
+        if (!is_file(path, file.sha256, file.size_bytes)) {
+            std::error_code code;
+            changed += fs::exists(path, code) ? 1 : 0;
+            continue;
+        }
+        std::error_code code;
+        if (stays)
+            manifest_.files[place] = file;
+        else
+            removed_ += fs::remove(path, code) ? 1 : 0;
+    }
+    if (changed > 0)
+        cli::warn(
+            fmt::format("{} sector files in {} are no longer part of the map, and stay: somebody changed "
+                        "them since they were pulled",
+                        changed,
+                        folder_));
 }
 
 void FolderPull::report() const {
     if (connection_.options.json) {
         nlohmann::ordered_json json;
         json["kind"] = "pull";
-        json["job"] = job_.substr(job_.find('/') + 1);
+        json["job"] = job_number(job_);
         json["folder"] = folder_;
         json["pulled"] = pulled_;
         json["unchanged"] = unchanged_;
-        json["unfinished"] = unfinished_;
-        std::puts(json.dump().c_str());
+        json["removed"] = removed_;
+        json["unfinished"] = manifest_.unfinished;
+        std::puts(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
         return;
     }
     std::string text = fmt::format("{}: {} sector files pulled", folder_, with_thousands(pulled_));
     if (unchanged_ > 0)
         text += fmt::format(", {} were there already", with_thousands(unchanged_));
-    if (unfinished_ > 0)
-        text += fmt::format(", {} sectors are not done", with_thousands(unfinished_));
+    if (removed_ > 0)
+        text += fmt::format(", {} removed that the map no longer has", with_thousands(removed_));
+    if (manifest_.unfinished > 0)
+        text += fmt::format(", {} sectors are not done", with_thousands(manifest_.unfinished));
     std::puts(text.c_str());
 }
 

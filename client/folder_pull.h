@@ -1,39 +1,60 @@
-// Sector files of a job, on their way into a folder.
+// Sector files of a job, on their way into a folder that is whole in the end.
 #pragma once
 
 #include "client/connection.h"
 #include "format/cli/failure.h"
+#include "format/folder/manifest.h"
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
+#include <unordered_set>
 #include <utility>
 
 namespace drtv::client {
 
-// Pulls the finished files of a job into a folder, as often as asked: each file once. A file that is there
-// already and right is left alone. REQUIRES: the folder is there; the connection outlives it.
+// Pulls the finished files of a job into a folder, as often as asked, and then writes its manifest. A file
+// that is there already and right is left alone. REQUIRES: the folder is there; the connection outlives it.
 class FolderPull {
   public:
-    FolderPull(ServerConnection& connection, const std::string& job, std::string folder);
+    // Asks the server for job and map. Fails for a folder of another map (earlier_manifest).
+    [[nodiscard]] static cli::Result<FolderPull> open(ServerConnection& connection,
+                                                      const std::string& job,
+                                                      std::string folder,
+                                                      bool replace);
 
-    // Those that have been finished since.
+    // The files of sectors that have been finished since.
     [[nodiscard]] cli::Result<void> pull();
+
+    // All of the job's files, looked at once more; removes files of earlier pulls that the map no longer has;
+    // then writes the manifest. One pull at a time is here in a folder.
+    [[nodiscard]] cli::Result<void> finish();
 
     // What was done, on standard output.
     void report() const;
 
   private:
-    [[nodiscard]] cli::Result<void> choose(v1::PullSectorsRequest& wanted);
+    FolderPull(ServerConnection& connection, v1::Job job, std::string folder)
+        : connection_(connection), job_(std::move(job)), folder_(std::move(folder)) {}
+
+    // Those that are done, of which the folder has no right file.
+    [[nodiscard]] cli::Result<v1::PullSectorsRequest> missing_files();
+    [[nodiscard]] cli::Result<void> fetch(const v1::PullSectorsRequest& wanted);
+    void note_sector(const v1::Sector& sector, v1::PullSectorsRequest& wanted);
     [[nodiscard]] bool has_file_of(const v1::Sector& sector) const;
+    void leave_or_remove_earlier_files();
 
     ServerConnection& connection_;
-    const std::string job_;
+    v1::Job job_;
     const std::string folder_;
-    std::set<std::pair<std::int32_t, std::int32_t>> here_;  // sectors whose files are in the folder
+    std::optional<folder::FolderManifest> earlier_;
+    folder::FolderManifest manifest_;
+    std::unordered_set<std::string> names_there_;  // in the folder
+    std::set<folder::SectorPlace> looked_at_;      // of sectors that are done
     std::int64_t pulled_ = 0;
     std::int64_t unchanged_ = 0;
-    std::int64_t unfinished_ = 0;
+    std::int64_t removed_ = 0;
 };
 
 }  // namespace drtv::client

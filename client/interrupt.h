@@ -1,8 +1,5 @@
-// Ctrl-C: noted, so that a command ends in good order.
+// Ctrl-C: noted, so that a command ends in good order, and calls that wait end with it.
 #pragma once
-
-#include <atomic>
-#include <thread>
 
 namespace grpc {
 class ClientContext;
@@ -10,14 +7,13 @@ class ClientContext;
 
 namespace drtv::client {
 
-// From now on ctrl-C ends nothing, and is noted.
+// From now on ctrl-C ends nothing by itself, and is noted. What waits for the terminal or for a call ends.
 void catch_interrupt();
 
 // Whether ctrl-C has been seen since. Thread-safe.
 [[nodiscard]] bool interrupted();
 
-// Cancels a call as soon as ctrl-C is seen, because reading from a stream waits for the next message. The
-// context must outlive it.
+// Cancels a call as soon as ctrl-C is seen. The context must outlive it.
 class InterruptGuard {
   public:
     explicit InterruptGuard(grpc::ClientContext& context);
@@ -26,8 +22,7 @@ class InterruptGuard {
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
   private:
-    std::atomic<bool> ended_{false};
-    std::thread thread_;
+    grpc::ClientContext& context_;
 };
 
 }  // namespace drtv::client

@@ -11,9 +11,9 @@ namespace drtv::client {
 cli::Result<v1::Job> get_job(ServerConnection& connection, const std::string& job) {
     v1::GetJobRequest request;
     request.set_name(job_resource(job));
-    grpc::ClientContext context;
     v1::Job found;
-    if (const grpc::Status status = connection.jobs->GetJob(&context, request, &found); !status.ok())
+    if (const grpc::Status status = call(*connection.jobs, &v1::Jobs::Stub::GetJob, request, found);
+        !status.ok())
         return tl::unexpected(connection.failure(status));
     return found;
 }

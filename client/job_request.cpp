@@ -1,11 +1,11 @@
 #include "client/job_request.h"
 
-#include "client/interrupt.h"
+#include "client/folder_manifest.h"
 #include "client/map_contents.h"
 #include "client/map_text.h"
 #include "client/upload.h"
-#include "client/whole_file.h"
 #include "format/cli/report.h"
+#include "format/folder/whole_file.h"
 #include "format/spelling/suggestion.h"
 #include "settings/message/job_settings.h"
 
@@ -123,10 +123,11 @@ cli::Result<PreparedJob> prepare_job(ServerConnection& connection, const SubmitO
         cli::note(fmt::format("{} is named twice; it is in the map once", document));
     if (!options.pull_folder.empty()) {
         // Before anything is baked: a wrong folder should not cost an hour.
-        if (auto made = make_folder(options.pull_folder); !made)
+        if (auto made = folder::make_folder(options.pull_folder); !made)
             return tl::unexpected(made.error());
     }
-    catch_interrupt();
+    if (auto checked = check_server(connection); !checked)
+        return tl::unexpected(checked.error());
     auto map = upload_map(connection, *local);
     if (!map)
         return tl::unexpected(map.error());
@@ -136,6 +137,10 @@ cli::Result<PreparedJob> prepare_job(ServerConnection& connection, const SubmitO
     std::fflush(stdout);
     for (const std::string& warning : map->warnings())
         cli::warn(warning);
+    if (!options.pull_folder.empty()) {
+        if (auto known = earlier_manifest(options.pull_folder, *map, options.replace); !known)
+            return tl::unexpected(known.error());
+    }
     job->set_map(map->name());
     return PreparedJob{std::move(*map), std::move(*job)};
 }

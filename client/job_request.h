@@ -19,6 +19,7 @@ struct SubmitOptions {
     bool wait = false;
     bool yes = false;         // a large job needs no question
     std::string pull_folder;  // empty: pull nothing
+    bool replace = false;     // a folder of another map is taken too
     double timeout_s = 0;     // of --wait and --pull; 0: without a limit
 };
 
@@ -28,7 +29,7 @@ struct PreparedJob {
 };
 
 // Checks the options, makes the folder to pull to, uploads the map, tells what it was understood to hold and
-// what is doubtful in it, and gives the job. From the upload on, ctrl-C is caught (interrupt.h).
+// what is doubtful in it, and gives the job.
 [[nodiscard]] cli::Result<PreparedJob> prepare_job(ServerConnection& connection,
                                                    const SubmitOptions& options);
 

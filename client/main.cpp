@@ -5,6 +5,7 @@
 #include "client/command_pull.h"
 #include "client/command_submit.h"
 #include "client/command_watch.h"
+#include "client/server_file.h"
 #include "format/cli/option_checks.h"
 #include "format/cli/parse.h"
 #include "format/cli/report.h"
@@ -16,6 +17,7 @@
 #include <cstdlib>
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace drtv::client {
 namespace {
@@ -32,14 +34,30 @@ struct Arguments {
     std::function<cli::Result<cli::ExitCode>(ServerConnection&)> run;
 };
 
+using Command = std::function<cli::Result<cli::ExitCode>(ServerConnection&)>;
+
+// Runs the command, once the server is known to be there.
+void when_called(CLI::App& command, Arguments& to, Command run) {
+    command.callback([&to, run = std::move(run)] {
+        to.run = [run](ServerConnection& connection) -> cli::Result<cli::ExitCode> {
+            if (auto checked = check_server(connection); !checked)
+                return tl::unexpected(checked.error());
+            return run(connection);
+        };
+    });
+}
+
 void add_connection_options(CLI::App& app, ConnectionOptions& options) {
-    app.add_option("--server", options.server, "Address of bakerd")
-        ->envname("DRTV_SERVER")
-        ->capture_default_str();
+    app.add_option("--server",
+                   options.server,
+                   "bakerd's HOST:PORT, or its name in the file below; default 127.0.0.1:7447")
+        ->envname("DRTV_SERVER");
     app.add_flag("--json", options.json, "Print JSON, one object per line (bake.schema.json)");
-    app.add_option("--tls-ca", options.tls_ca, "Authority that signs the server's certificate (PEM)");
-    app.add_option("--tls-cert", options.tls_certificate, "This client's certificate (PEM)");
-    app.add_option("--tls-key", options.tls_key, "Its key (PEM)");
+    app.add_option("--tls-ca", options.tls_ca, "Authority that signs the server's certificate (PEM)")
+        ->envname("DRTV_TLS_CA");
+    app.add_option("--tls-cert", options.tls_certificate, "This client's certificate (PEM)")
+        ->envname("DRTV_TLS_CERT");
+    app.add_option("--tls-key", options.tls_key, "Its key (PEM)")->envname("DRTV_TLS_KEY");
 }
 
 void add_timeout(CLI::App& command, SubmitOptions& submit) {
@@ -73,6 +91,8 @@ void add_map_commands(CLI::App& app, Arguments& to) {
     submit->add_flag("--yes", to.submit.yes, "Bake more than 2,500 sectors without a question");
     submit->add_flag("--wait", to.submit.wait, "Show progress until the job ends");
     submit->add_option("--pull", to.submit.pull_folder, "Wait, then write the sector files to this folder");
+    submit->add_flag(
+        "--replace", to.submit.replace, "With --pull: take a folder that holds sectors of another map");
     add_timeout(*submit, to.submit);
     submit->callback([&to] {
         if (to.submit.timeout_s > 0 && !to.submit.wait && to.submit.pull_folder.empty())
@@ -94,26 +114,22 @@ void add_job_commands(CLI::App& app, Arguments& to) {
         command->add_option("JOB", to.job, "Number of the job")->required();
     add_timeout(*watch, to.submit);
     pull->add_option("--out", to.folder, "Folder for the files; made when missing")->required();
-    list->callback([&to] { to.run = run_list; });
-    status->callback(
-        [&to] { to.run = [&to](ServerConnection& connection) { return run_status(connection, to.job); }; });
-    watch->callback([&to] {
-        to.run = [&to](ServerConnection& connection) {
-            return run_watch(connection, to.job, to.submit.timeout_s);
-        };
+    pull->add_flag("--replace", to.submit.replace, "Take a folder that holds sectors of another map");
+    when_called(*list, to, run_list);
+    when_called(*status, to, [&to](ServerConnection& connection) { return run_status(connection, to.job); });
+    when_called(*watch, to, [&to](ServerConnection& connection) {
+        return run_watch(connection, to.job, to.submit.timeout_s);
     });
-    cancel->callback(
-        [&to] { to.run = [&to](ServerConnection& connection) { return run_cancel(connection, to.job); }; });
-    pull->callback([&to] {
-        to.run = [&to](ServerConnection& connection) { return run_pull(connection, to.job, to.folder); };
+    when_called(*cancel, to, [&to](ServerConnection& connection) { return run_cancel(connection, to.job); });
+    when_called(*pull, to, [&to](ServerConnection& connection) {
+        return run_pull(connection, to.job, to.folder, to.submit.replace);
     });
 }
 
 void add_cache_command(CLI::App& app, Arguments& to) {
     CLI::App* cache = app.add_subcommand("cache", "Size and hit rate of the results that bakerd keeps");
     cache->add_flag("--clear", to.clear, "Remove all that no running job needs");
-    cache->callback(
-        [&to] { to.run = [&to](ServerConnection& connection) { return run_cache(connection, to.clear); }; });
+    when_called(*cache, to, [&to](ServerConnection& connection) { return run_cache(connection, to.clear); });
 }
 
 }  // namespace
@@ -126,7 +142,8 @@ int main(int argc, char** argv) {
     CLI::App app{"bake submits maps to bakerd and pulls the baked sector files.", "bake"};
     app.require_subcommand(1);
     app.set_version_flag("--version", cli::version_text("bake"));
-    app.footer("bake COMMAND --help lists a command's options.\n\n" + cli::exit_code_help("bake"));
+    app.footer("bake COMMAND --help lists a command's options. Servers have names in " +
+               client::server_file_path() + " (docs/client.md).\n\n" + cli::exit_code_help("bake"));
     client::Arguments arguments;
     client::add_connection_options(app, arguments.connection);
     client::add_map_commands(app, arguments);

@@ -1,7 +1,7 @@
 #include "client/map_contents.h"
 
 #include "client/gltf_references.h"
-#include "client/sha256.h"
+#include "format/folder/sha256.h"
 #include "map_files/limits.h"
 #include "map_files/local_map.h"
 #include "map_files/reference.h"
@@ -37,7 +37,7 @@ cli::Result<MapContentFile> content_file(const map_files::LocalMap& map, const s
     const auto size_bytes = static_cast<std::int64_t>(std::filesystem::file_size(place, code));
     if (auto checked = map_files::check_size(place.string(), code ? 0 : size_bytes); !checked)
         return cli::fail(cli::exit_invalid, checked.error());
-    const auto digest = sha256_of_file(place.string());
+    const auto digest = folder::sha256_of_file(place.string());
     if (!digest)
         return tl::unexpected(digest.error());
     MapContentFile file;

@@ -1,7 +1,7 @@
 #include "client/plan_picture.h"
 
 #include "client/canvas.h"
-#include "client/whole_file.h"
+#include "format/folder/whole_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -109,7 +109,7 @@ cli::Result<void> write_plan_picture(const v1::Plan& plan, const std::string& pa
     const auto png = canvas.png();
     if (!png)
         return tl::unexpected(png.error());
-    return write_whole(path, *png);
+    return folder::write_whole(path, *png);
 }
 
 }  // namespace drtv::client

@@ -19,9 +19,10 @@ namespace drtv::client {
 namespace {
 
 constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
-// Another client may be uploading the same blob, or the line may break: the rest is tried again.
-constexpr int upload_attempts = 20;
-constexpr std::chrono::milliseconds upload_pause{500};
+// Another client may be uploading the same blob, or the line may break: the rest is tried again, this long
+// after anything of it arrived.
+constexpr std::chrono::seconds upload_patience{60};
+constexpr std::chrono::milliseconds upload_pause{200};
 
 struct Transfer {
     std::int64_t sent = 0;
@@ -50,8 +51,7 @@ grpc::Status find_missing(ServerConnection& connection,
         blob->set_sha256(file->sha256);
         blob->set_size_bytes(file->size_bytes);
     }
-    grpc::ClientContext context;
-    return connection.blobs->FindMissingBlobs(&context, request, &response);
+    return call(*connection.blobs, &v1::Blobs::Stub::FindMissingBlobs, request, response);
 }
 
 cli::Result<grpc::Status> send_blob(ServerConnection& connection,
@@ -64,6 +64,7 @@ cli::Result<grpc::Status> send_blob(ServerConnection& connection,
         return cli::fail(cli::exit_unreadable,
                          fmt::format("cannot read {}: {}", file.disk_path, std::strerror(errno)));
     grpc::ClientContext context;
+    const InterruptGuard guard(context);
     v1::UploadBlobResponse response;
     const auto writer = connection.blobs->UploadBlob(&context, &response);
     v1::UploadBlobRequest request;
@@ -89,31 +90,36 @@ cli::Result<grpc::Status> send_blob(ServerConnection& connection,
 
 cli::Result<void> upload_file(ServerConnection& connection, const MapContentFile& file, Transfer& transfer) {
     const std::int64_t sent_before = transfer.sent;
+    std::int64_t known_bytes = -1;
+    auto last_progress = std::chrono::steady_clock::now();
     grpc::Status status;
-    for (int attempt = 0; attempt < upload_attempts && !interrupted(); ++attempt) {
-        if (attempt > 0)
+    for (bool first = true; !interrupted(); first = false) {
+        if (!first)
             std::this_thread::sleep_for(upload_pause);
         v1::FindMissingBlobsResponse missing;
         status = find_missing(connection, {&file}, missing);
-        // A daemon that restarts is away for a moment.
-        if (is_passing(status))
-            continue;
-        if (!status.ok())
-            break;
-        if (missing.missing_size() == 0) {
+        if (status.ok() && missing.missing_size() == 0) {
             transfer.sent = sent_before + file.size_bytes;
             return {};
         }
-        const std::int64_t received_bytes = missing.missing(0).received_bytes();
-        const std::int64_t offset = received_bytes <= file.size_bytes ? received_bytes : 0;
-        transfer.sent = sent_before + offset;
-        const auto sent = send_blob(connection, file, offset, transfer);
-        if (!sent)
-            return tl::unexpected(sent.error());
-        status = *sent;
-        if (status.ok())
-            return {};
-        if (!is_passing(status))
+        if (status.ok()) {
+            const std::int64_t received_bytes = missing.missing(0).received_bytes();
+            if (received_bytes != known_bytes)
+                last_progress = std::chrono::steady_clock::now();
+            known_bytes = received_bytes;
+            const std::int64_t offset = received_bytes <= file.size_bytes ? received_bytes : 0;
+            transfer.sent = sent_before + offset;
+            transfer.show();
+            const auto sent = send_blob(connection, file, offset, transfer);
+            if (!sent)
+                return tl::unexpected(sent.error());
+            status = *sent;
+            if (status.ok())
+                return {};
+        }
+        // Another client that sends the same file brings it here as well; a daemon that restarts is away for
+        // a moment.
+        if (!is_passing(status) || std::chrono::steady_clock::now() - last_progress > upload_patience)
             break;
     }
     if (interrupted())
@@ -161,9 +167,8 @@ cli::Result<v1::Map> upload_map(ServerConnection& connection, const MapContents&
         return tl::unexpected(connection.failure(status));
     if (auto uploaded = upload_missing(connection, map, missing); !uploaded)
         return tl::unexpected(uploaded.error());
-    grpc::ClientContext context;
     v1::Map created;
-    const grpc::Status status = connection.maps->CreateMap(&context, creation_of(map), &created);
+    const grpc::Status status = call(*connection.maps, &v1::Maps::Stub::CreateMap, creation_of(map), created);
     if (!status.ok())
         return tl::unexpected(connection.failure(status, cli::exit_invalid));
     return created;

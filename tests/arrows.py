@@ -41,8 +41,9 @@ ROOMS = {
     "format/light": "format/runtime nlohmann_json tl-expected",
     "format/spelling": "",
     "format/cli": "format/spelling drtv/version.h CLI11 nlohmann_json tl-expected",
-    "format/kit": "format/cli format/light format/runtime format CLI11 stb tl-expected",
-    "format/tool": "format/kit format/cli format/runtime format CLI11 nlohmann_json tl-expected threads",
+    "format/folder": "format/cli nlohmann_json OpenSSL tl-expected",
+    "format/kit": "format/folder format/cli format/light format/runtime format CLI11 stb tl-expected",
+    "format/tool": "format/kit format/folder format/cli format/runtime format CLI11 nlohmann_json tl-expected threads",
     "placement": "drtv/conventions.h GLM CGAL fmt tl-expected",
     "proto": "gRPC protobuf",
     "settings": "fmt tl-expected",
@@ -55,11 +56,11 @@ ROOMS = {
     "bakerd/store": "bakerd/map map_files nlohmann_json fmt tl-expected",
     "bakerd/worker": "bakerd/reuse bakerd/bake bakerd/trace bakerd/store bakerd/map settings TBB nlohmann_json spdlog fmt tl-expected",
     "bakerd/farm": "bakerd/worker bakerd/reuse bakerd/bake bakerd/store bakerd/map settings SQLite spdlog fmt tl-expected",
-    "bakerd/service": "bakerd/farm bakerd/reuse bakerd/store bakerd/map map_files settings/message settings proto gRPC protobuf fmt tl-expected",
-    "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map map_files format/kit format/cli format/light format/runtime format GLM TBB CLI11 stb fmt tl-expected",
+    "bakerd/service": "bakerd/farm bakerd/reuse bakerd/store bakerd/map map_files drtv/version.h settings/message settings proto gRPC protobuf fmt tl-expected",
+    "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map map_files format/kit format/folder format/cli format/light format/runtime format GLM TBB CLI11 stb fmt tl-expected",
     # main wires the rooms together and asks trace whether this CPU will do.
-    "bakerd": "bakerd/service bakerd/farm bakerd/picture bakerd/worker bakerd/trace format/cli CLI11 spdlog",
-    "client": "settings/message settings map_files proto format/cli format/spelling CLI11 nlohmann_json stb OpenSSL gRPC fmt tl-expected",
+    "bakerd": "bakerd/service bakerd/farm bakerd/bake bakerd/picture bakerd/worker bakerd/trace format/cli CLI11 spdlog",
+    "client": "drtv/version.h settings/message settings map_files proto format/cli format/folder format/spelling CLI11 nlohmann_json stb gRPC fmt tl-expected",
 }
 # A game may link these, so nothing in them may rest on a room under another licence.
 MIT_ROOMS = ("format", "proto")

@@ -13,6 +13,7 @@ SCHEMAS = {
     ("drtv", "relight"): "format/relight.schema.json",
     ("bakerd", "render"): "bakerd/picture/pick.schema.json",
     "bake": "client/bake.schema.json",
+    "sectors": "format/sectors.schema.json",
     "messages": "format/message.schema.json",
 }
 _validators = {}

@@ -91,7 +91,7 @@ Result<PlanView> Farm::plan_job(const JobRequest& request) {
     return PlanView{std::move(planned->plan), seconds};
 }
 
-Result<JobView> Farm::create_job(const JobRequest& request) {
+Result<JobView> Farm::create_job(const JobRequest& request, const std::function<bool()>& is_left) {
     if (request.request_id.size() > 64)
         return fail(ErrorCode::invalid_argument, "the request id is longer than 64 bytes");
     if (const auto same = book_.begin_request(request.request_id))
@@ -102,22 +102,17 @@ Result<JobView> Farm::create_job(const JobRequest& request) {
         const std::string& id;
         ~End() { book.end_request(id); }
     } end{book_, request.request_id};
-    return create_planned(request);
+    return create_planned(request, is_left);
 }
 
-Result<JobView> Farm::create_planned(const JobRequest& request) {
+Result<JobView> Farm::create_planned(const JobRequest& request, const std::function<bool()>& is_left) {
     CachePin pin(*cache_);
     auto planned = planner_->plan(request, pin);
     if (!planned)
         return tl::unexpected(planned.error());
-    JobRow job;
-    job.request_id = request.request_id;
-    job.manifest = request.manifest;
-    job.inventory = planned->inventory;
-    job.preset = request.preset;
-    job.settings = request.settings;
-    job.region = request.region;
-    job.created_ms = unix_milliseconds();
+    if (is_left())
+        return fail(ErrorCode::aborted, "the client left before the job was made");
+    JobRow job = new_job(request, planned->inventory);
     if (auto written = write_job(*database_, planned->plan, job); !written)
         return tl::unexpected(written.error());
     spdlog::info("job {}: {} sectors, {} of them in the cache, {} nearly so",
@@ -130,6 +125,9 @@ Result<JobView> Farm::create_planned(const JobRequest& request) {
               wanted_by(planned->plan),
               planned->plan.warnings,
               seconds_to_bake(planned->plan, options_.threads));
+    // Its client cannot know of it.
+    if (is_left())
+        return cancel_job(id);
     executor_->wake();
     return get_job(id);
 }

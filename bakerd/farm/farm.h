@@ -14,6 +14,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,7 +64,10 @@ class Farm {
     [[nodiscard]] store::Result<MapView> create_map(store::Manifest manifest);
     [[nodiscard]] store::Result<MapView> get_map(const Digest& id);
 
-    [[nodiscard]] store::Result<JobView> create_job(const JobRequest& request);
+    // Planning takes a while: no job is made, or it is cancelled, where `is_left` says that its client has
+    // gone.
+    [[nodiscard]] store::Result<JobView> create_job(
+        const JobRequest& request, const std::function<bool()>& is_left = [] { return false; });
     [[nodiscard]] store::Result<PlanView> plan_job(const JobRequest& request);
     [[nodiscard]] store::Result<JobView> get_job(std::int64_t id);
     // Newest first, ids below `before`.
@@ -92,7 +96,8 @@ class Farm {
     [[nodiscard]] store::Result<void> load();
     void start();
 
-    [[nodiscard]] store::Result<JobView> create_planned(const JobRequest& request);
+    [[nodiscard]] store::Result<JobView> create_planned(const JobRequest& request,
+                                                        const std::function<bool()>& is_left);
     // Jobs in memory know no warnings of sectors.
     [[nodiscard]] store::Result<JobView> with_warnings(std::optional<JobView> view, std::int64_t id);
     [[nodiscard]] JobSectorView view_of(Checked<JobSectorRow> sector) const;

@@ -104,6 +104,18 @@ void resume(Connection& connection, JobRow job, JobBook& book) {
 
 }  // namespace
 
+JobRow new_job(const JobRequest& request, const Digest& inventory) {
+    JobRow job;
+    job.request_id = request.request_id;
+    job.manifest = request.manifest;
+    job.inventory = inventory;
+    job.preset = request.preset;
+    job.settings = request.settings;
+    job.region = request.region;
+    job.created_ms = unix_milliseconds();
+    return job;
+}
+
 store::Result<void> write_job(Database& database, const Plan& plan, JobRow& job) {
     job.sectors_total = static_cast<std::int64_t>(plan.sectors.size());
     auto done = database.write([&](Connection& connection) { insert_job(connection, job); });

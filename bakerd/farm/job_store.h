@@ -11,6 +11,9 @@
 
 namespace drtv::farm {
 
+// What is asked for, now.
+[[nodiscard]] JobRow new_job(const JobRequest& request, const Digest& inventory);
+
 // Writes a job with all its sectors, in portions, so that others are answered meanwhile; nobody knows of the
 // job before all of it is there. `job` has an id then, and its counts. REQUIRES: what the plan reuses is
 // pinned.

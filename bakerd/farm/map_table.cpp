@@ -21,7 +21,7 @@ void columns(auto& codec, Is<Columns> auto& map) {
     codec("content", map.content);
     codec("inventory", map.inventory);
     codec("sector_count", map.sector_count);
-    map::visit_numbers(codec, map.survey);
+    map::visit_values(codec, map.survey);
     codec("warnings", map.warnings);
 }
 

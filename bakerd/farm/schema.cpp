@@ -183,7 +183,7 @@ CREATE TABLE map (
   INTEGER NOT NULL, lamps INTEGER NOT NULL, suns INTEGER NOT NULL, glowing_objects INTEGER NOT NULL, probes INTEGER
   NOT NULL, interiors INTEGER NOT NULL, probe_free_volumes INTEGER NOT NULL, spacing_volumes INTEGER NOT NULL, up_m2
   REAL NOT NULL, down_m2 REAL NOT NULL,
-  warnings TEXT NOT NULL, sum INTEGER NOT NULL) WITHOUT ROWID;
+  likeness TEXT NOT NULL, warnings TEXT NOT NULL, sum INTEGER NOT NULL) WITHOUT ROWID;
 )sql",
 };
 

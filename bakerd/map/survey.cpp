@@ -47,6 +47,24 @@ void add_object(const Object& object, const Map& map, Survey& survey) {
         add_areas(object, map, survey);
 }
 
+// REQUIRES: the objects are sorted by digest.
+std::string likeness_of(const Map& map) {
+    constexpr std::size_t max_objects = 32;
+    constexpr std::size_t digits = 16;
+    std::string likeness;
+    std::size_t count = 0;
+    const Digest* last = nullptr;
+    for (const Object& object : map.objects) {
+        if (last != nullptr && *last == object.digest)
+            continue;
+        last = &object.digest;
+        likeness += to_hex(object.digest).substr(0, digits);
+        if (++count == max_objects)
+            break;
+    }
+    return likeness;
+}
+
 }  // namespace
 
 Survey survey_of(const Map& map) {
@@ -69,6 +87,7 @@ Survey survey_of(const Map& map) {
         else
             ++(volume.kind == VolumeKind::no_probes ? survey.probe_free_volumes : survey.spacing_volumes);
     }
+    survey.likeness = likeness_of(map);
     survey.ignored_nodes = map.ignored_nodes;
     survey.probes = static_cast<std::int64_t>(map.probes.size());
     return survey;

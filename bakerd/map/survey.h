@@ -29,10 +29,13 @@ struct Survey {
     // double-sided one faces both ways.
     double up_m2 = 0;
     double down_m2 = 0;
+    // Of the 32 objects with the smallest digests, 16 hexadecimal digits each (MinHash, Broder 1997):
+    // versions of one map share some, different maps none.
+    std::string likeness;
 };
 
-// Hands each number with its name to `codec`, which reads or writes them all.
-void visit_numbers(auto& codec, auto& survey) {
+// Hands each value with its name to `codec`, which reads or writes them all.
+void visit_values(auto& codec, auto& survey) {
     codec("x0", survey.low.x);
     codec("y0", survey.low.y);
     codec("z0", survey.low.z);
@@ -52,6 +55,7 @@ void visit_numbers(auto& codec, auto& survey) {
     codec("spacing_volumes", survey.spacing_volumes);
     codec("up_m2", survey.up_m2);
     codec("down_m2", survey.down_m2);
+    codec("likeness", survey.likeness);
 }
 
 [[nodiscard]] Survey survey_of(const Map& map);

@@ -1,6 +1,7 @@
 #include "bakerd/picture/scenery.h"
 
 #include "bakerd/map/import.h"
+#include "format/folder/manifest.h"
 #include "map_files/local_map.h"
 
 #include <fmt/format.h>
@@ -47,6 +48,23 @@ cli::Result<std::shared_ptr<const map::Map>> read_map(std::span<const std::strin
     if (!map)
         return cli::fail(cli::exit_invalid, map.error());
     return std::make_shared<const map::Map>(std::move(*map));
+}
+
+cli::Result<void> check_manifest(const std::string& folder, const map::Map& map) {
+    const auto manifest = folder::read_manifest(folder);
+    if (!manifest)
+        return tl::unexpected(manifest.error());
+    const std::string content = to_hex(map.content);
+    if (!*manifest || (*manifest)->map == content)
+        return {};
+    return cli::fail(
+        cli::exit_invalid,
+        fmt::format("the sectors of {} were baked of another map, or before an edit of this one: submit "
+                    "the map again ({} names {}..., the map is {}...)",
+                    folder,
+                    folder::manifest_path(folder),
+                    (*manifest)->map.substr(0, 8),
+                    content.substr(0, 8)));
 }
 
 map::Bounds bounds_of(const map::Map& map) {

@@ -20,6 +20,9 @@ inline constexpr std::size_t max_triangles = 64'000'000;
 // Reads glTF files, and folders of them, as one map.
 [[nodiscard]] cli::Result<std::shared_ptr<const map::Map>> read_map(std::span<const std::string> arguments);
 
+// Fails where the folder has a manifest (sectors.json) and that is of another map.
+[[nodiscard]] cli::Result<void> check_manifest(const std::string& folder, const map::Map& map);
+
 // Of all objects; empty where there is none.
 [[nodiscard]] map::Bounds bounds_of(const map::Map& map);
 

@@ -41,6 +41,8 @@ cli::Result<std::unique_ptr<const Shot>> Shot::open(const RenderRequest& request
     auto map = read_map(request.maps);
     if (!map)
         return tl::unexpected(map.error());
+    if (auto checked = check_manifest(request.folder, **map); !checked)
+        return tl::unexpected(checked.error());
     const map::Bounds bounds = bounds_of(**map);
     if (bounds.empty())
         return cli::fail(cli::exit_invalid, "the map has nothing that could be seen");

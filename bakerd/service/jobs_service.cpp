@@ -107,14 +107,14 @@ grpc::Status answer(const store::Result<farm::JobView>& view, v1::Job* response)
 
 }  // namespace
 
-grpc::Status JobsService::CreateJob(grpc::ServerContext*,
+grpc::Status JobsService::CreateJob(grpc::ServerContext* context,
                                     const v1::CreateJobRequest* request,
                                     v1::Job* response) {
     auto wanted = wanted_job(request->job());
     if (!wanted)
         return to_status(wanted.error());
     wanted->request_id = request->request_id();
-    return answer(farm_.create_job(*wanted), response);
+    return answer(farm_.create_job(*wanted, [context] { return context->IsCancelled(); }), response);
 }
 
 grpc::Status JobsService::PlanJob(grpc::ServerContext*,

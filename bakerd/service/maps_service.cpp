@@ -25,6 +25,7 @@ void fill(const map::Survey& survey, v1::MapSurvey& out) {
     out.set_interiors(survey.interiors);
     out.set_probe_free_volumes(survey.probe_free_volumes);
     out.set_spacing_volumes(survey.spacing_volumes);
+    out.set_likeness(survey.likeness);
 }
 
 void fill(const farm::MapView& view, v1::Map& out) {

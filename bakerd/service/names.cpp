@@ -2,6 +2,7 @@
 
 #include "drtv/v1/error.pb.h"
 
+#include <drtv/version.h>
 #include <fmt/format.h>
 
 #include <algorithm>

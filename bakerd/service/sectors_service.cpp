@@ -70,9 +70,10 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
     if (!job)
         return to_status(job.error());
     std::int64_t lost = 0;
+    std::size_t buffered_bytes = 0;
     std::string first_loss;
     const auto send_or_note = [&](const farm::JobSectorView& view) -> grpc::Status {
-        grpc::Status status = send(view, *writer);
+        grpc::Status status = send(view, *writer, buffered_bytes);
         if (status.error_code() != grpc::StatusCode::DATA_LOSS)
             return status;
         if (++lost == 1)
@@ -117,7 +118,8 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
 }
 
 grpc::Status SectorsService::send(const farm::JobSectorView& view,
-                                  grpc::ServerWriter<v1::PullSectorsResponse>& writer) {
+                                  grpc::ServerWriter<v1::PullSectorsResponse>& writer,
+                                  std::size_t& buffered_bytes) {
     const auto bytes = farm_.blobs().get(view.row.file);
     if (!bytes)
         return failed(
@@ -125,13 +127,20 @@ grpc::Status SectorsService::send(const farm::JobSectorView& view,
             fmt::format("sector ({}, {}): {}", view.row.sector.i, view.row.sector.j, bytes.error().message));
     v1::PullSectorsResponse message;
     fill(view, *message.mutable_sector());
-    if (!writer.Write(message))
-        return grpc::Status::CANCELLED;
-    message.clear_sector();
+    // The first bytes come with the sector: most files are one message.
     for (std::size_t at = 0; at < bytes->size(); at += max_chunk_bytes) {
         message.set_data(bytes->data() + at, std::min(max_chunk_bytes, bytes->size() - at));
-        if (!writer.Write(message))
+        // Small files travel together: each flush wakes the other side.
+        constexpr std::size_t flushed_bytes = std::size_t{256} << 10;
+        buffered_bytes += message.data().size();
+        grpc::WriteOptions options;
+        if (buffered_bytes < flushed_bytes)
+            options.set_buffer_hint();
+        else
+            buffered_bytes = 0;
+        if (!writer.Write(message, options))
             return grpc::Status::CANCELLED;
+        message.clear_sector();
     }
     return grpc::Status::OK;
 }

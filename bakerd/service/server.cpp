@@ -62,9 +62,10 @@ tl::expected<void, std::string> check_address(const std::string& address) {
 }  // namespace
 
 struct Server::State {
-    explicit State(farm::Farm& farm)
-        : blobs(farm), maps(farm), jobs(farm, stopping), sectors(farm), cache(farm) {}
+    State(farm::Farm& farm, const BuildInfo& build)
+        : info(build), blobs(farm), maps(farm), jobs(farm, stopping), sectors(farm), cache(farm) {}
     std::atomic<bool> stopping{false};
+    InfoService info;
     BlobsService blobs;
     MapsService maps;
     JobsService jobs;
@@ -79,7 +80,8 @@ Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 tl::expected<std::unique_ptr<Server>, std::string> Server::start(farm::Farm& farm,
                                                                  const std::string& address,
-                                                                 const TlsFiles& tls) {
+                                                                 const TlsFiles& tls,
+                                                                 const BuildInfo& build) {
     if (auto checked = check_address(address); !checked)
         return tl::unexpected(checked.error());
     const auto secured = credentials(tls);
@@ -87,13 +89,18 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(farm::Farm& far
         return tl::unexpected(secured.error());
     grpc::EnableDefaultHealthCheckService(true);
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-    auto state = std::make_unique<State>(farm);
+    auto state = std::make_unique<State>(farm, build);
     state->host = address.substr(0, address.rfind(':'));
     grpc::ServerBuilder builder;
     // Two daemons on one port would share its calls by chance.
     builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
     builder.SetMaxReceiveMessageSize(max_message_bytes);
+    // Clients ping a connection that is silent (client/connection.cpp); one that is dead frees its handlers.
+    builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
     builder.AddListeningPort(address, *secured, &state->port);
+    builder.RegisterService(&state->info);
     builder.RegisterService(&state->blobs);
     builder.RegisterService(&state->maps);
     builder.RegisterService(&state->jobs);

@@ -3,6 +3,7 @@
 
 #include "bakerd/farm/farm.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -14,12 +15,19 @@ struct TlsFiles {
     std::string certificate, key, client_ca;  // all or none; with them, clients must show a certificate
 };
 
+// What clients are told of this program.
+struct BuildInfo {
+    std::string instruction_set;
+    std::uint32_t baker_version = 0;
+};
+
 class Server {
   public:
     // Listens at once. A sentence when the address is wrong or taken, or a TLS file cannot be read.
     [[nodiscard]] static tl::expected<std::unique_ptr<Server>, std::string> start(farm::Farm& farm,
                                                                                   const std::string& address,
-                                                                                  const TlsFiles& tls);
+                                                                                  const TlsFiles& tls,
+                                                                                  const BuildInfo& build);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

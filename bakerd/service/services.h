@@ -2,14 +2,17 @@
 #pragma once
 
 #include "bakerd/farm/farm.h"
+#include "bakerd/service/server.h"
 
 #include "drtv/v1/blob.grpc.pb.h"
 #include "drtv/v1/cache.grpc.pb.h"
+#include "drtv/v1/info.grpc.pb.h"
 #include "drtv/v1/job.grpc.pb.h"
 #include "drtv/v1/map.grpc.pb.h"
 #include "drtv/v1/sector.grpc.pb.h"
 
 #include <atomic>
+#include <utility>
 
 namespace drtv::service {
 
@@ -82,8 +85,20 @@ class SectorsService final : public v1::Sectors::Service {
 
   private:
     [[nodiscard]] grpc::Status send(const farm::JobSectorView& view,
-                                    grpc::ServerWriter<v1::PullSectorsResponse>& writer);
+                                    grpc::ServerWriter<v1::PullSectorsResponse>& writer,
+                                    std::size_t& buffered_bytes);
     farm::Farm& farm_;
+};
+
+class InfoService final : public v1::Info::Service {
+  public:
+    explicit InfoService(BuildInfo build) : build_(std::move(build)) {}
+    grpc::Status GetServerInfo(grpc::ServerContext* context,
+                               const v1::GetServerInfoRequest* request,
+                               v1::ServerInfo* response) override;
+
+  private:
+    const BuildInfo build_;
 };
 
 class CacheService final : public v1::Cache::Service {

@@ -58,7 +58,7 @@ void fields(auto& codec, Is<AssessRequest> auto& request) {
 }
 
 void fields(auto& codec, Is<map::Survey> auto& survey) {
-    map::visit_numbers(codec, survey);
+    map::visit_values(codec, survey);
 }
 
 void fields(auto& codec, Is<MapSummary> auto& summary) {

@@ -1,8 +1,8 @@
 #include "files.h"
 
-#include <drtv/read.h>
+#include "folder/whole_file.h"
 
-#include <unistd.h>
+#include <drtv/read.h>
 
 #include <algorithm>
 #include <array>
@@ -47,11 +47,6 @@ tl::unexpected<cli::Failure> cannot_write(const std::string& path, const std::st
 }
 
 // False where not all could be written; `errno` tells why.
-bool write_all(std::FILE* file, const FileBytes& bytes) {
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    const bool closed = std::fclose(file) == 0;
-    return written && closed;
-}
 
 }  // namespace
 
@@ -116,23 +111,8 @@ std::optional<std::pair<std::int32_t, std::int32_t>> sector_of_file(const std::s
     return sector;
 }
 
-cli::Result<void> write_file(const std::string& link, const FileBytes& bytes) {
-    // The file behind a link is replaced, not the link; a device or a pipe is not replaced at all.
-    std::error_code code;
-    const bool is_link = fs::is_symlink(link, code);
-    const std::string path = is_link ? fs::weakly_canonical(link, code).string() : link;
-    const fs::file_status status = fs::status(path, code);
-    if (fs::exists(status) && !fs::is_regular_file(status))
-        return cannot_write(link, "it is not a regular file");
-    const std::string temporary = path + ".tmp" + std::to_string(::getpid());
-    std::FILE* file = std::fopen(temporary.c_str(), "wb");
-    if (file == nullptr)
-        return cannot("write", path);
-    if (write_all(file, bytes) && std::rename(temporary.c_str(), path.c_str()) == 0)
-        return {};
-    const auto failure = cannot("write", path);
-    std::remove(temporary.c_str());
-    return failure;
+cli::Result<void> write_file(const std::string& path, const FileBytes& bytes) {
+    return folder::write_whole(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 cli::Result<void> check_png_target(const std::string& path) {

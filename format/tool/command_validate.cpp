@@ -1,6 +1,7 @@
 #include "check_files.h"
 #include "cli/report.h"
 #include "commands.h"
+#include "folder/manifest.h"
 #include "kit/files.h"
 #include "validate_report.h"
 
@@ -51,6 +52,40 @@ bool find_files(const std::vector<std::string>& paths, std::vector<CheckedFile>&
     return complete;
 }
 
+// The worst of what the manifests of the files' folders tell.
+cli::ExitCode check_manifests(const std::vector<CheckedFile>& files, bool warnings_as_errors) {
+    constexpr std::size_t most_told = 10;
+    std::set<std::string> folders;
+    for (const CheckedFile& file : files) {
+        const std::string folder = fs::path(file.path).parent_path().string();
+        folders.insert(folder.empty() ? "." : folder);
+    }
+    cli::ExitCode exit_code = cli::exit_done;
+    for (const std::string& folder : folders) {
+        const auto manifest = folder::read_manifest(folder);
+        if (!manifest) {
+            exit_code = std::max(exit_code, cli::complain(manifest.error()));
+            continue;
+        }
+        if (!*manifest)
+            continue;
+        const std::vector<std::string> sentences = folder::check_listed_files(folder, **manifest);
+        for (std::size_t n = 0; n < std::min(sentences.size(), most_told); ++n)
+            exit_code = std::max(exit_code, cli::complain({cli::exit_invalid, sentences[n]}));
+        if (sentences.size() > most_told)
+            cli::complain({cli::exit_invalid,
+                           folder::manifest_path(folder) + ": and " +
+                               std::to_string(sentences.size() - most_told) + " more files"});
+        if ((*manifest)->unfinished > 0) {
+            cli::warn(folder::manifest_path(folder) + ": the job was not finished when it was pulled: " +
+                      std::to_string((*manifest)->unfinished) + " sectors had no file");
+            if (warnings_as_errors)
+                exit_code = std::max(exit_code, cli::exit_invalid);
+        }
+    }
+    return exit_code;
+}
+
 }  // namespace
 
 cli::Result<cli::ExitCode> run_validate(const ValidateRequest& request) {
@@ -81,7 +116,8 @@ cli::Result<cli::ExitCode> run_validate(const ValidateRequest& request) {
         report.add(file, valid);
     }
     report.finish(folders);
-    return exit_code;
+    return request.quick ? exit_code
+                         : std::max(exit_code, check_manifests(files, request.warnings_as_errors));
 }
 
 }  // namespace drtv::tool

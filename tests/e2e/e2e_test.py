@@ -16,8 +16,11 @@ import time
 import unittest
 
 import farm_fixture
+import json_lines
 import map_edits
 from farm_fixture import Farm, make_island, read_folder, tiny_disk, wait_until
+from lines import cutting_proxy, version_server
+from small_maps import LAWN, WALL, change, lawn_with_ballast, with_lamps, with_many_instances, write_map
 
 OPTIONS = argparse.Namespace(bin="", data="")
 # 36 sectors around the crater and the inland village: ground, jungle, huts, manual probes, the no_probes box.
@@ -43,72 +46,6 @@ def world_translation(nodes, number):
         point = tuple(a + b for a, b in zip(turned, node.get("translation", (0, 0, 0))))
         number = next((n for n, parent in enumerate(nodes) if number in parent.get("children", [])), None)
     return point
-
-
-def write_map(path, buffer_uri=None, **quads):
-    """A glTF file with a node of that name for each quad: four corners in world axes, counter-clockwise seen from the front.
-    With a uri the caller writes the buffer; the bytes are given."""
-    data = b"".join(
-        struct.pack("<3f", x, z, -y) for quad in quads.values() for x, y, z in quad
-    ) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
-    vertices = {"buffer": 0, "byteOffset": 0, "byteLength": 48 * len(quads)}
-    indices = {"buffer": 0, "byteOffset": 48 * len(quads), "byteLength": 12}
-    corners = [
-        {"bufferView": 0, "byteOffset": 48 * n, "componentType": 5126, "type": "VEC3", "count": 4}
-        for n in range(len(quads))
-    ]
-    material = {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]}}
-    document = {
-        "asset": {"version": "2.0"},
-        "materials": [material],
-        "buffers": [
-            {
-                "byteLength": len(data),
-                "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()
-                if buffer_uri is None
-                else buffer_uri,
-            }
-        ],
-        "bufferViews": [vertices, indices],
-        "accessors": [{"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 6}, *corners],
-        "meshes": [
-            {"primitives": [{"attributes": {"POSITION": 1 + n}, "indices": 0, "material": 0}]}
-            for n in range(len(quads))
-        ],
-        "nodes": [{"name": name, "mesh": n} for n, name in enumerate(quads)],
-        "scene": 0,
-        "scenes": [{"nodes": list(range(len(quads)))}],
-    }
-    os.makedirs(os.path.dirname(path), exist_ok=True)
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(document, file)
-    return path if buffer_uri is None else data
-
-
-# In one sector, with a wall in its north; the wall's other side comes by turning the order round.
-LAWN = [(1, 1, 0), (31, 1, 0), (31, 31, 0), (1, 31, 0)]
-WALL = [(1, 30, 0), (31, 30, 0), (31, 30, 16), (1, 30, 16)]
-
-
-def with_lamps(path, groups):
-    """The map with a lamp over the lawn for each of so many light groups."""
-    with open(path, encoding="utf-8") as file:
-        document = json.load(file)
-    lamp = {"type": "point", "intensity": 1000}
-    extension = "KHR_lights_punctual"
-    document.update(extensionsUsed=[extension], extensions={extension: {"lights": [lamp]}})
-    for n in range(groups):
-        document["scenes"][0]["nodes"].append(len(document["nodes"]))
-        document["nodes"].append(
-            {
-                "translation": [3 + 3 * n, 3, -16],
-                "extensions": {extension: {"light": 0}},
-                "extras": {"light_group": f"group {n}"},
-            }
-        )
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(document, file)
-    return path
 
 
 def last_object(done):
@@ -775,6 +712,288 @@ class Client(FarmTest):
             for name in os.listdir(disk):
                 self.assertTrue(name.endswith(".drtv"), name)
                 self.assertEqual(self.farm.run("drtv", "validate", os.path.join(disk, name)).returncode, 0)
+
+
+class Pull(FarmTest):
+    """Folders that are whole."""
+
+    def two_islands(self, name="map.gltf"):
+        moved = [(x + 128, y, z) for x, y, z in LAWN]
+        return write_map(self.farm.path(name), lawn=LAWN, far=moved)
+
+    def manifest(self, name="pulled"):
+        with open(self.farm.path(name + "/sectors.json"), encoding="utf-8") as file:
+            manifest = json.load(file)
+        json_lines.validator("sectors").validate(manifest)
+        return manifest
+
+    def assert_whole(self, name="pulled"):
+        """The manifest lists what is there, and drtv agrees."""
+        listed = {entry["file"]: entry["sha256"] for entry in self.manifest(name)["sectors"]}
+        there = read_folder(self.farm.path(name))
+        self.assertEqual(listed, {file: hashlib.sha256(data).hexdigest() for file, data in there.items()})
+        self.assertEqual([file for file in os.listdir(self.farm.path(name)) if ".part" in file], [])
+        done = self.farm.run("drtv", "validate", self.farm.path(name))
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_the_manifest_says_what_the_folder_holds(self):
+        daemon = self.farm.daemon()
+        self.pulled(daemon, self.two_islands(), *FEW_RAYS)
+        manifest = self.manifest()
+        self.assertEqual([entry["sector"] for entry in manifest["sectors"]], [[0, 0], [2, 0]])
+        self.assertEqual(
+            (manifest["documents"], manifest["job"], manifest["preset"], manifest["settings"]["rays"]),
+            (["map.gltf"], "1", "draft", 64),
+        )
+        self.assertEqual((manifest["baker_version"], manifest["unfinished"]), (6, 0))
+        self.assert_whole()
+
+    def test_files_that_the_map_no_longer_has_are_removed_and_told(self):
+        daemon = self.farm.daemon()
+        self.pulled(daemon, self.two_islands("before.gltf"), *FEW_RAYS)
+        self.assertEqual(len(read_folder(self.farm.path("pulled"))), 2)
+        # Another document, of another name: an object that both have makes them versions of one map.
+        after = write_map(self.farm.path("after.gltf"), lawn=LAWN)
+        done = self.farm.bake(daemon, "submit", after, *FEW_RAYS, "--pull", self.farm.path("pulled"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("1 removed that the map no longer has", done.stdout)
+        self.assertEqual(list(read_folder(self.farm.path("pulled"))), ["sector_0_0.drtv"])
+        self.assert_whole()
+        # One that somebody changed stays, and is told.
+        self.pulled(daemon, self.two_islands("before.gltf"), *FEW_RAYS)
+        with open(self.farm.path("pulled/sector_2_0.drtv"), "ab") as file:
+            file.write(b"mine")
+        done = self.farm.bake(daemon, "pull", "2", "--out", self.farm.path("pulled"))
+        self.assertIn("1 sector files", done.stderr)
+        self.assertIn("somebody changed them", done.stderr)
+        self.assertIn("sector_2_0.drtv", read_folder(self.farm.path("pulled")))
+        done = self.farm.run("drtv", "validate", self.farm.path("pulled"))
+        self.assertEqual(done.returncode, INVALID)
+        self.assertIn("sector_2_0.drtv is not listed", done.stderr)
+
+    def test_a_folder_of_another_map_is_refused_before_the_bake(self):
+        daemon = self.farm.daemon()
+        self.pulled(daemon, self.two_islands("one.gltf"), *FEW_RAYS)
+        before = read_folder(self.farm.path("pulled"))
+        other = write_map(self.farm.path("other.gltf"), wall=WALL, floor=[(x, y, 1) for x, y, z in LAWN])
+        submit = ("submit", other, *FEW_RAYS, "--pull", self.farm.path("pulled"))
+        done = self.farm.bake(daemon, *submit)
+        self.assert_sentence(done, "holds sectors of another map (one.gltf)", "--replace", status=INVALID)
+        self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 2)
+        self.assertEqual(read_folder(self.farm.path("pulled")), before)
+        done = self.farm.bake(daemon, *submit, "--replace")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("1 removed", done.stdout)
+        self.assert_whole()
+        done = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("pulled"))
+        self.assert_sentence(done, "holds sectors of another map (other.gltf)", status=INVALID)
+
+    def test_a_region_leaves_the_files_around_it_and_says_of_which_map_they_are(self):
+        daemon = self.farm.daemon()
+        self.pulled(daemon, self.two_islands(), *FEW_RAYS)
+        earlier = self.manifest()["map"]
+        write_map(self.farm.path("map.gltf"), lawn=LAWN, wall=WALL, far=[(x + 128, y, z) for x, y, z in LAWN])
+        self.pulled(daemon, self.farm.path("map.gltf"), *FEW_RAYS, "--region", "0,0,1,1")
+        near, far = self.manifest()["sectors"]
+        self.assertNotEqual(self.manifest()["map"], earlier)
+        self.assertEqual((near.get("map"), far.get("map")), (None, earlier))
+        self.assertEqual(self.manifest()["region"], [0, 0, 1, 1])
+        self.assert_whole()
+
+    def test_validate_names_what_is_not_as_it_was_pulled(self):
+        daemon = self.farm.daemon()
+        self.pulled(daemon, self.two_islands(), *FEW_RAYS)
+        folder = self.farm.path("pulled")
+        os.rename(folder + "/sector_0_0.drtv", folder + "/sector_2_0.drtv")
+        done = self.farm.run("drtv", "validate", folder)
+        self.assertEqual(done.returncode, INVALID)
+        self.assertIn("sector_0_0.drtv is listed, and cannot be read", done.stderr)
+        self.assertIn("sector_2_0.drtv", done.stderr)
+        for text, sentence in (("{", "is not the manifest of a pull"), ('{"version": 99}', "a newer bake")):
+            with open(folder + "/sectors.json", "w", encoding="utf-8") as file:
+                file.write(text)
+            done = self.farm.run("drtv", "validate", folder)
+            self.assertEqual(done.returncode, INVALID)
+            self.assertIn(sentence, done.stderr)
+        os.unlink(folder + "/sectors.json")
+        done = self.farm.bake(daemon, "pull", "1", "--out", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_whole()
+
+    def test_a_picture_of_another_map_is_refused(self):
+        daemon = self.farm.daemon()
+        path = self.two_islands()
+        self.pulled(daemon, path, *FEW_RAYS)
+        render = ("render", self.farm.path("pulled"), "--map", path, "--size", "32x32", "--out")
+        done = self.farm.run("bakerd", *render, self.farm.path("x.png"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        write_map(path, lawn=LAWN, wall=WALL)
+        done = self.farm.run("bakerd", *render, self.farm.path("y.png"))
+        self.assert_sentence(done, "baked of another map, or before an edit", status=INVALID)
+
+    def test_two_pulls_into_one_folder_both_succeed(self):
+        daemon = self.farm.daemon()
+        self.pulled(daemon, self.island(), *REGION, *FEW_RAYS, name="first")
+        both = [
+            self.farm.start_bake(daemon, "pull", "1", "--out", self.farm.path("pulled")) for _ in range(2)
+        ]
+        for pull in both:
+            out, err = pull.communicate(timeout=60)
+            self.assertEqual(pull.returncode, 0, out + err)
+        self.assertEqual(read_folder(self.farm.path("pulled")), read_folder(self.farm.path("first")))
+        self.assert_whole()
+
+    def test_a_pull_that_is_killed_goes_on(self):
+        daemon = self.farm.daemon()
+        expected = self.pulled(daemon, self.island(), *REGION, *FEW_RAYS, name="first")
+        for delay in (0.02, 0.04, 0.06):
+            pull = self.farm.start_bake(daemon, "pull", "1", "--out", self.farm.path("pulled"))
+            time.sleep(delay)
+            pull.kill()
+            pull.communicate()
+        done = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("pulled"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(read_folder(self.farm.path("pulled")), expected)
+
+    def test_a_pull_goes_on_where_its_connection_was_cut(self):
+        daemon = self.farm.daemon()
+        expected = self.pulled(daemon, self.island(), *REGION, *FEW_RAYS, name="first")
+        for cut_after in (20_000, 60_000, 200_000):
+            with cutting_proxy(daemon.address, cut_after) as address:
+                folder = self.farm.path(f"cut{cut_after}")
+                done = self.farm.run("bake", "--server", address, "pull", "1", "--out", folder)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn("lost bakerd", done.stderr)
+                self.assertEqual(read_folder(folder), expected)
+
+    def test_the_folder_is_tried_before_the_bake(self):
+        daemon = self.farm.daemon()
+        path = self.two_islands()
+        for folder in ("/proc/none", path):
+            done = self.farm.bake(daemon, "submit", path, "--pull", folder)
+            self.assert_sentence(done, folder, status=UNREADABLE)
+        self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
+
+
+class LettingGo(FarmTest):
+    """The client that leaves, waits, or is left alone."""
+
+    def interrupt(self, process, patience_s=1.5):
+        """Ctrl-C; gives what it said. It ends within the time."""
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=patience_s)
+        self.assertEqual(process.returncode, 130, out + err)
+        return err
+
+    def test_ctrl_c_ends_an_import_and_no_job_is_made(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        with_many_instances(path, 1_500_000)
+        submit = self.farm.start_bake(daemon, "submit", path, *FEW_RAYS)
+        wait_until(daemon.worker_pid, what="the import")
+        time.sleep(0.5)
+        self.assertIn("interrupted", self.interrupt(submit))
+        wait_until(
+            lambda: self.farm.bake(daemon, "plan", write_map(self.farm.path("b.gltf"), lawn=LAWN)).returncode
+            == 0
+        )
+        self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
+
+    def test_ctrl_c_ends_calls_and_uploads_to_a_daemon_that_stands_still(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        job = self.pulled(daemon, path, *FEW_RAYS) and "1"
+        daemon.process.send_signal(signal.SIGSTOP)
+        try:
+            for arguments in (
+                ("submit", path),
+                ("status", job),
+                ("list",),
+                ("watch", job),
+                ("pull", job, "--out", self.farm.path("other")),
+            ):
+                bake = self.farm.start_bake(daemon, *arguments)
+                time.sleep(0.4)
+                self.interrupt(bake)
+        finally:
+            daemon.process.send_signal(signal.SIGCONT)
+
+    def test_ctrl_c_ends_an_upload_that_stands_still(self):
+        daemon = self.farm.daemon()
+        path = lawn_with_ballast(self.farm.path("map.gltf"), 96 << 20)
+        with cutting_proxy(daemon.address, None, stall_after=3_000_000) as address:
+            bake = subprocess.Popen(
+                [os.path.join(OPTIONS.bin, "bake"), "--server", address, "submit", path],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            time.sleep(1.5)
+            self.assertIn("what was uploaded stays with the server", self.interrupt(bake))
+
+    def test_a_second_client_with_the_same_file_takes_part(self):
+        daemon = self.farm.daemon()
+        path = lawn_with_ballast(self.farm.path("map.gltf"), 48 << 20)
+        both = [self.farm.start_bake(daemon, "plan", path, *FEW_RAYS) for _ in range(2)]
+        for plan in both:
+            out, err = plan.communicate(timeout=120)
+            self.assertEqual(plan.returncode, 0, out + err)
+
+    def test_a_watch_of_a_dead_connection_ends(self):
+        daemon = self.farm.daemon()
+        self.assertEqual(self.farm.bake(daemon, "submit", self.island()).returncode, 0)
+        watch = self.farm.start_bake(daemon, "watch", "1", "--timeout", "3")
+        time.sleep(0.5)
+        daemon.process.send_signal(signal.SIGSTOP)
+        try:
+            out, err = watch.communicate(timeout=10)
+            self.assertEqual(watch.returncode, TIMEOUT, out + err)
+        finally:
+            daemon.process.send_signal(signal.SIGCONT)
+
+    def test_loopback_never_goes_through_a_proxy(self):
+        daemon = self.farm.daemon()
+        proxy = {
+            "http_proxy": "http://127.0.0.1:1",
+            "https_proxy": "http://127.0.0.1:1",
+            "grpc_proxy": "http://127.0.0.1:1",
+        }
+        for address in (daemon.address, daemon.address.replace("127.0.0.1", "localhost")):
+            done = self.farm.run("bake", "--server", address, "list", env=proxy, timeout=20)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_servers_have_names_and_options_count_before_environment_and_file(self):
+        daemon = self.farm.daemon()
+        path = self.farm.path("bake.toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(
+                f'server = "here"\n[here]\naddress = "{daemon.address}"\n[gone]\naddress = "127.0.0.1:1"\n'
+            )
+        file = {"DRTV_CONFIG": path}
+        self.assertEqual(self.farm.run("bake", "list", env=file).returncode, 0)
+        self.assertEqual(self.farm.run("bake", "--server", "gone", "list", env=file).returncode, SERVER)
+        gone = {**file, "DRTV_SERVER": "gone"}
+        self.assertEqual(self.farm.run("bake", "list", env=gone).returncode, SERVER)
+        self.assertEqual(self.farm.run("bake", "--server", "here", "list", env=gone).returncode, 0)
+        done = self.farm.run("bake", "--server", "hero", "list", env=file)
+        self.assert_sentence(done, "neither HOST:PORT nor a name", 'Did you mean "here"?', status=USAGE)
+        done = self.farm.run("bake", "list", env={**file, "DRTV_TLS_CA": "/nowhere/ca.pem"})
+        self.assert_sentence(done, "cannot read /nowhere/ca.pem", status=UNREADABLE)
+        with open(path, "a", encoding="utf-8") as file:
+            file.write('colour = "red"\n')
+        done = self.farm.run("bake", "list", env={"DRTV_CONFIG": path})
+        self.assert_sentence(done, "bake.toml: 'gone.colour' is not known there", status=USAGE)
+
+    def test_versions_further_apart_are_told(self):
+        for version, works in (("0.2.7", True), ("0.3.0", False), ("1.1.0", False), ("", False)):
+            with version_server(version) as address:
+                done = self.farm.run("bake", "--server", address, "list")
+                if works:
+                    self.assertNotIn("minor version apart", done.stderr)
+                else:
+                    self.assert_sentence(
+                        done, version or "0.1.0 or older", "0.1.0", "minor version apart", status=SERVER
+                    )
 
 
 class Daemon(FarmTest):

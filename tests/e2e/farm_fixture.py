@@ -142,9 +142,11 @@ def make_island(folder, plants):
 
 
 def read_folder(folder):
-    """File name -> bytes."""
+    """Name of each sector file -> its bytes."""
     contents = {}
     for name in sorted(os.listdir(folder)):
+        if not name.endswith(".drtv"):
+            continue
         with open(os.path.join(folder, name), "rb") as file:
             contents[name] = file.read()
     return contents

@@ -55,6 +55,23 @@ TEST(Survey, CountsWhatTheMapHolds) {
     EXPECT_NEAR(survey.down_m2, 3 * 4 + 1, 1e-3);
 }
 
+// Versions of one map share objects, and so a part of their likeness.
+TEST(Survey, LikenessIsOfTheSmallestDigests) {
+    const auto with_crates = [](int count, float shift_m) {
+        GltfBuilder b;
+        const int crate = b.add_mesh(box({0, 0, 0}, {1, 1, 1}));
+        for (int n = 0; n < count; ++n)
+            b.add_node(
+                {.mesh = crate, .translation = glm::dvec3(3.0f * static_cast<float>(n) + shift_m, 0, 0)});
+        return survey_of(b).likeness;
+    };
+    EXPECT_EQ(with_crates(2, 0).size(), 32u);
+    EXPECT_EQ(with_crates(100, 0).size(), 32u * 16u);
+    EXPECT_NE(with_crates(2, 0).find(with_crates(1, 0)), std::string::npos);
+    EXPECT_EQ(with_crates(2, 0).find(with_crates(1, 1)), std::string::npos);
+    EXPECT_EQ(Survey().likeness, "");
+}
+
 TEST(Survey, DoubleSidedFacesBothWaysAndMirrorsTurnNothing) {
     GltfBuilder b;
     b.place(square(10), "", b.add_material({.double_sided = true}));

@@ -5,10 +5,12 @@
 
 #include "drtv/v1/blob.grpc.pb.h"
 #include "drtv/v1/error.pb.h"
+#include "drtv/v1/info.grpc.pb.h"
 #include "drtv/v1/job.grpc.pb.h"
 #include "drtv/v1/map.grpc.pb.h"
 #include "drtv/v1/sector.grpc.pb.h"
 
+#include <drtv/version.h>
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
@@ -34,7 +36,7 @@ class ServiceTest : public testing::Test {
                                                      (folder_ / "blobs").string(), "--threads", "1"},
                                   .threads = 1})
                     .value();
-        server_ = Server::start(*farm_, "127.0.0.1:0", {}).value();
+        server_ = Server::start(*farm_, "127.0.0.1:0", {}, {"a class", 7}).value();
         channel_ = grpc::CreateChannel(server_->address(), grpc::InsecureChannelCredentials());
         blobs_ = v1::Blobs::NewStub(channel_);
         maps_ = v1::Maps::NewStub(channel_);
@@ -254,6 +256,17 @@ TEST_F(ServiceTest, ListsComeInPages) {
 }
 
 // The health protocol's messages are one field each: no generated code is needed to speak it.
+TEST_F(ServiceTest, SaysWhatItIs) {
+    const auto info = v1::Info::NewStub(channel_);
+    grpc::ClientContext context;
+    v1::ServerInfo told;
+    ASSERT_TRUE(info->GetServerInfo(&context, {}, &told).ok());
+    EXPECT_EQ(told.version(), DRTV_VERSION);
+    EXPECT_EQ(told.instruction_set(), "a class");
+    EXPECT_EQ(told.baker_version(), 7u);
+    EXPECT_EQ(told.format_version(), "1." + std::to_string(DRTV_FORMAT_MINOR));
+}
+
 TEST_F(ServiceTest, HealthIsServing) {
     grpc::GenericStub stub(channel_);
     grpc::ClientContext context;
@@ -319,16 +332,16 @@ TEST(Server, TakenPortAndHalfTlsAreToldInASentence) {
     auto farm =
         farm::Farm::open({.data_folder = folder.string(), .worker_command = {"/bin/false"}, .threads = 1})
             .value();
-    const auto first = Server::start(*farm, "127.0.0.1:0", {}).value();
-    const auto second = Server::start(*farm, first->address(), {});
+    const auto first = Server::start(*farm, "127.0.0.1:0", {}, {}).value();
+    const auto second = Server::start(*farm, first->address(), {}, {});
     ASSERT_FALSE(second);
     EXPECT_NE(second.error().find(first->address()), std::string::npos);
-    EXPECT_NE(Server::start(*farm, "127.0.0.1:0", {.certificate = "cert.pem", .key = "", .client_ca = ""})
+    EXPECT_NE(Server::start(*farm, "127.0.0.1:0", {.certificate = "cert.pem", .key = "", .client_ca = ""}, {})
                   .error()
                   .find("all three"),
               std::string::npos);
     EXPECT_NE(Server::start(*farm, "127.0.0.1:0",
-                            {.certificate = "/nowhere/a", .key = "/nowhere/b", .client_ca = "/nowhere/c"})
+                            {.certificate = "/nowhere/a", .key = "/nowhere/b", .client_ca = "/nowhere/c"}, {})
                   .error()
                   .find("/nowhere/a"),
               std::string::npos);

@@ -94,12 +94,16 @@ TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
     const auto failure = std::get<RequestFailure>(round(RequestFailure{"two\nlines, \"quotes\"", true}));
     EXPECT_EQ(failure.sentence, "two\nlines, \"quotes\"");
     EXPECT_TRUE(failure.may_retry);
-    const auto inspected =
-        std::get<MapSummary>(round(MapSummary{some_digest,
-                                              map::digest_of(test::bytes_of("inventory")),
-                                              {{1, -2}, {3, 4}},
-                                              {.low = {1, 2, 3}, .static_objects = 5, .down_m2 = 0.25},
-                                              {"warned"}}));
+    MapSummary summary;
+    summary.content = some_digest;
+    summary.sectors = {{1, -2}, {3, 4}};
+    summary.survey.low = {1, 2, 3};
+    summary.survey.static_objects = 5;
+    summary.survey.down_m2 = 0.25;
+    summary.survey.likeness = "ab";
+    summary.warnings = {"warned"};
+    const auto inspected = std::get<MapSummary>(round(summary));
+    EXPECT_EQ(inspected.survey.likeness, "ab");
     EXPECT_EQ(inspected.content, some_digest);
     EXPECT_EQ(inspected.sectors, (std::vector<map::SectorCoordinate>{{1, -2}, {3, 4}}));
     EXPECT_EQ(std::tuple(inspected.survey.low.z, inspected.survey.static_objects, inspected.survey.down_m2),

@@ -1,6 +1,5 @@
-#include "client/sha256.h"
+#include "sha256.h"
 
-#include <fmt/format.h>
 #include <openssl/evp.h>
 
 #include <array>
@@ -10,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-namespace drtv::client {
+namespace drtv::folder {
 namespace {
 
 class Sha256 {
@@ -24,9 +23,12 @@ class Sha256 {
     [[nodiscard]] std::string hex() {
         std::array<unsigned char, 32> digest{};
         EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr);
+        constexpr const char* digits = "0123456789abcdef";
         std::string text;
-        for (unsigned char byte : digest)
-            text += fmt::format("{:02x}", byte);
+        for (unsigned char byte : digest) {
+            text += digits[byte >> 4];
+            text += digits[byte & 15];
+        }
         return text;
     }
 
@@ -38,7 +40,7 @@ class Sha256 {
 
 cli::Result<std::string> sha256_of_file(const std::string& path) {
     const auto fail = [&] {
-        return cli::fail(cli::exit_unreadable, fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+        return cli::fail(cli::exit_unreadable, "cannot read " + path + ": " + std::strerror(errno));
     };
     std::ifstream file(path, std::ios::binary);
     if (!file)
@@ -53,10 +55,10 @@ cli::Result<std::string> sha256_of_file(const std::string& path) {
     return hash.hex();
 }
 
-std::string sha256_of_text(const std::string& bytes) {
+std::string sha256_of_text(std::string_view bytes) {
     Sha256 hash;
     hash.add(bytes.data(), bytes.size());
     return hash.hex();
 }
 
-}  // namespace drtv::client
+}  // namespace drtv::folder
