@@ -80,6 +80,17 @@ cli::Result<cli::ExitCode> run_status(ServerConnection& connection, const std::s
     return cli::exit_done;
 }
 
+cli::Result<cli::ExitCode> run_retry(ServerConnection& connection, const std::string& job) {
+    v1::RetryJobRequest request;
+    request.set_name(job_resource(job));
+    v1::Job retried;
+    if (const grpc::Status status = call(*connection.jobs, &v1::Jobs::Stub::RetryJob, request, retried);
+        !status.ok())
+        return tl::unexpected(connection.failure(status));
+    print(connection, retried);
+    return cli::exit_done;
+}
+
 cli::Result<cli::ExitCode> run_cancel(ServerConnection& connection, const std::string& job) {
     v1::CancelJobRequest request;
     request.set_name(job_resource(job));

@@ -45,9 +45,9 @@ void print_submitted(const ServerConnection& connection, const v1::Job& job) {
 
 // Files come while the rest is still being baked.
 cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
-                                          const std::string& job,
+                                          const std::string& number,
                                           const SubmitOptions& options) {
-    auto pull = FolderPull::open(connection, job, options.pull_folder, options.replace);
+    auto pull = FolderPull::open(connection, number, options.pull_folder, options.replace);
     if (!pull)
         return tl::unexpected(pull.error());
     cli::Result<void> pulled;
@@ -58,19 +58,24 @@ cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
         done = now.sectors_done();
         pulled = pull->pull();
     };
-    const auto watched = run_watch(connection, job, options.timeout_s, pull_new);
-    if (!watched && watched.error().code == cli::exit_interrupted)
-        return watched;
+    const auto job = watch_job(connection, number, {.timeout_s = options.timeout_s, .progressed = pull_new});
+    if (!job && job.error().code == cli::exit_interrupted)
+        return tl::unexpected(job.error());
     if (pulled)
         pulled = pull->finish();
     if (pulled)
         pull->report();
     // How the job ended says more than what became of its files.
-    if (!watched && !pulled)
+    if (!job && !pulled)
         cli::warn(pulled.error().sentence);
-    if (watched && !pulled)
+    if (!job)
+        return tl::unexpected(job.error());
+    auto ended = tell_end(connection, *job);
+    if (ended && !pulled)
         return tl::unexpected(pulled.error());
-    return watched;
+    if (!pulled)
+        cli::warn(pulled.error().sentence);
+    return ended;
 }
 
 }  // namespace
@@ -101,7 +106,7 @@ cli::Result<cli::ExitCode> run_submit(ServerConnection& connection, const Submit
     if (!options.pull_folder.empty())
         return watch_and_pull(connection, number, options);
     if (options.wait)
-        return run_watch(connection, number, options.timeout_s);
+        return run_watch(connection, number, {.timeout_s = options.timeout_s});
     print_submitted(connection, created);
     return cli::exit_done;
 }

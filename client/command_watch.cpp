@@ -57,7 +57,7 @@ double share_ended(const v1::Job& job) {
 grpc::Status follow(ServerConnection& connection,
                     const std::string& name,
                     Progress& progress,
-                    const OnProgress& progressed,
+                    const WatchOptions& options,
                     const Deadline& deadline,
                     v1::Job& last) {
     v1::WatchJobRequest request;
@@ -70,8 +70,10 @@ grpc::Status follow(ServerConnection& connection,
     v1::Job job;
     while (reader->Read(&job)) {
         last = job;
-        if (progressed)
-            progressed(job);
+        if (options.progressed)
+            options.progressed(job);
+        if (options.quiet || has_ended(job))
+            continue;
         if (connection.options.json) {
             std::puts(json_line(job).c_str());
             std::fflush(stdout);
@@ -82,37 +84,22 @@ grpc::Status follow(ServerConnection& connection,
     return reader->Finish();
 }
 
-cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1::Job& job) {
-    if (!connection.options.json)
-        std::puts(one_line(job).c_str());
-    for (const std::string& warning : job.warnings())
-        cli::warn(warning);
-    const bool succeeded = job.state() == v1::Job::SUCCEEDED;
-    if (succeeded && job.sectors_total() > 0 && job.probes() == 0) {
-        cli::warn(
-            "no probe was placed: no column of the lattice meets ground that faces up, with 1.5 m of air "
-            "above it");
-    }
-    return end_of(job);
-}
-
 }  // namespace
 
-cli::Result<cli::ExitCode> run_watch(ServerConnection& connection,
-                                     const std::string& argument,
-                                     double timeout_s,
-                                     const OnProgress& progressed) {
+cli::Result<v1::Job> watch_job(ServerConnection& connection,
+                               const std::string& argument,
+                               const WatchOptions& options) {
     const std::string name = job_resource(argument);
     const std::string number = name.substr(name.find('/') + 1);
     const std::string come_back = "come back with: bake watch " + number;
-    const Deadline deadline = deadline_in(timeout_s);
+    const Deadline deadline = deadline_in(options.timeout_s);
     Progress progress;
     v1::Job job;
     auto last_contact = std::chrono::steady_clock::now();
     bool told = false;
     for (;;) {
         const std::string state_before = job.SerializeAsString();
-        const grpc::Status status = follow(connection, name, progress, progressed, deadline, job);
+        const grpc::Status status = follow(connection, name, progress, options, deadline, job);
         progress.clear();
         if (interrupted()) {
             return cli::fail(cli::exit_interrupted,
@@ -122,10 +109,11 @@ cli::Result<cli::ExitCode> run_watch(ServerConnection& connection,
             break;
         if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED ||
             (deadline && std::chrono::system_clock::now() >= *deadline)) {
-            return cli::fail(
-                cli::exit_timeout,
-                fmt::format(
-                    "job {} has not ended after {} s, and goes on; {}", number, timeout_s, come_back));
+            return cli::fail(cli::exit_timeout,
+                             fmt::format("job {} has not ended after {} s, and goes on; {}",
+                                         number,
+                                         options.timeout_s,
+                                         come_back));
         }
         if (status.error_code() != grpc::StatusCode::UNAVAILABLE)
             return tl::unexpected(connection.failure(status));
@@ -140,7 +128,23 @@ cli::Result<cli::ExitCode> run_watch(ServerConnection& connection,
         told = true;
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
     }
-    return tell_end(connection, job);
+    return job;
+}
+
+cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1::Job& job) {
+    for (const std::string& warning : job.warnings())
+        cli::warn(warning);
+    std::puts((connection.options.json ? json_line(job) : one_line(job)).c_str());
+    return end_of(job);
+}
+
+cli::Result<cli::ExitCode> run_watch(ServerConnection& connection,
+                                     const std::string& argument,
+                                     const WatchOptions& options) {
+    const auto job = watch_job(connection, argument, options);
+    if (!job)
+        return tl::unexpected(job.error());
+    return tell_end(connection, *job);
 }
 
 }  // namespace drtv::client

@@ -1,4 +1,4 @@
-// bake watch: a job's progress until it ends.
+// bake watch and wait: a job until it ends.
 #pragma once
 
 #include "client/connection.h"
@@ -10,12 +10,23 @@ namespace drtv::client {
 
 using OnProgress = std::function<void(const v1::Job&)>;
 
-// `job` is "12" or "jobs/12"; `progressed` is told of it now and again. Ends as the job does, but with
-// exit_interrupted when ctrl-C ended the watch, and exit_timeout when the job has not ended after `timeout_s`
-// seconds (0: without a limit): then the job goes on.
+struct WatchOptions {
+    double timeout_s = 0;  // 0: without a limit
+    bool quiet = false;    // its end alone is told
+    OnProgress progressed = {};
+};
+
+// The job as it ended; `job` is "12" or "jobs/12". Fails with exit_interrupted when ctrl-C ended the watch,
+// and with exit_timeout when the time was over: then the job goes on.
+[[nodiscard]] cli::Result<v1::Job> watch_job(ServerConnection& connection,
+                                             const std::string& job,
+                                             const WatchOptions& options);
+
+// Says how a job ended, after its warnings. Gives the exit status (end_of).
+[[nodiscard]] cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1::Job& job);
+
 [[nodiscard]] cli::Result<cli::ExitCode> run_watch(ServerConnection& connection,
                                                    const std::string& job,
-                                                   double timeout_s,
-                                                   const OnProgress& progressed = {});
+                                                   const WatchOptions& options);
 
 }  // namespace drtv::client

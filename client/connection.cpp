@@ -99,6 +99,7 @@ cli::Failure ServerConnection::failure(const grpc::Status& status, cli::ExitCode
         case grpc::StatusCode::INVALID_ARGUMENT:
             return {invalid, status.error_message()};
         case grpc::StatusCode::NOT_FOUND:
+        case grpc::StatusCode::FAILED_PRECONDITION:
             return {cli::exit_usage, status.error_message()};
         case grpc::StatusCode::DATA_LOSS:
             return {cli::exit_unreadable, status.error_message()};

@@ -1,6 +1,7 @@
 #include "client/job_text.h"
 
 #include "client/number_text.h"
+#include "format/cli/report.h"
 #include "settings/message/job_settings.h"
 
 #include <fmt/format.h>
@@ -14,6 +15,14 @@ using Json = nlohmann::ordered_json;
 // What stands behind the collection in a resource's name: "12" of "jobs/12".
 std::string last_part(const std::string& resource) {
     return resource.substr(resource.find('/') + 1);
+}
+
+// From its making to its end; 0 before.
+double seconds_of(const Job& job) {
+    if (!job.has_end_time())
+        return 0;
+    const auto nanoseconds = static_cast<double>(job.end_time().nanos() - job.create_time().nanos());
+    return static_cast<double>(job.end_time().seconds() - job.create_time().seconds()) + nanoseconds * 1e-9;
 }
 
 // Those that are not the preset's.
@@ -70,6 +79,7 @@ std::string json_line(const Job& job) {
     json["sectors_failed"] = job.sectors_failed();
     json["sectors_cached"] = job.sectors_cached();
     json["sectors_near"] = job.sectors_near();
+    json["sectors_baked"] = job.sectors_done() - job.sectors_cached() - job.sectors_near();
     json["largest_bound"] = job.largest_bound();
     json["probes"] = job.probes();
     json["rays"] = job.rays();
@@ -77,6 +87,7 @@ std::string json_line(const Job& job) {
     json["seconds_left"] = job.seconds_left();
     json["created"] = job.create_time().seconds();
     json["ended"] = job.end_time().seconds();
+    json["seconds"] = seconds_of(job);
     add_settings(job, json);
     if (job.has_region()) {
         const auto& region = job.region();
@@ -84,6 +95,9 @@ std::string json_line(const Job& job) {
     }
     if (!job.error().empty())
         json["error"] = job.error();
+    // What this command has told, of the map too.
+    if (has_ended(job))
+        json["warnings"] = cli::warnings_told();
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -108,10 +122,8 @@ std::string one_line(const Job& job) {
     if (job.sectors_failed() > 0)
         text += fmt::format(", {} failed", with_thousands(job.sectors_failed()));
     text += fmt::format(", {} probes", with_thousands(job.probes()));
-    if (job.has_end_time()) {
-        const std::int64_t seconds = job.end_time().seconds() - job.create_time().seconds();
-        text += fmt::format(", {}", duration_text(static_cast<double>(seconds)));
-    }
+    if (job.has_end_time())
+        text += fmt::format(", {}", duration_text(seconds_of(job)));
     return text;
 }
 

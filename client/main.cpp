@@ -30,6 +30,7 @@ struct Arguments {
     std::string job;
     std::string folder;
     bool clear = false;
+    bool warnings_as_errors = false;
     // The subcommand. Set when the line has been parsed.
     std::function<cli::Result<cli::ExitCode>(ServerConnection&)> run;
 };
@@ -108,18 +109,25 @@ void add_job_commands(CLI::App& app, Arguments& to) {
     CLI::App* list = app.add_subcommand("list", "All jobs, newest first");
     CLI::App* status = app.add_subcommand("status", "One job, now");
     CLI::App* watch = app.add_subcommand("watch", "Show a job's progress until it ends");
+    CLI::App* wait = app.add_subcommand("wait", "Wait for a job's end, and say no more than that");
     CLI::App* cancel = app.add_subcommand("cancel", "Stop a job; what is done stays");
+    CLI::App* retry = app.add_subcommand("retry", "Bake the sectors again that have failed");
     CLI::App* pull = app.add_subcommand("pull", "Write a job's finished sector files to a folder");
-    for (CLI::App* command : {status, watch, cancel, pull})
+    for (CLI::App* command : {status, watch, wait, cancel, retry, pull})
         command->add_option("JOB", to.job, "Number of the job")->required();
-    add_timeout(*watch, to.submit);
+    for (CLI::App* command : {watch, wait})
+        add_timeout(*command, to.submit);
     pull->add_option("--out", to.folder, "Folder for the files; made when missing")->required();
     pull->add_flag("--replace", to.submit.replace, "Take a folder that holds sectors of another map");
     when_called(*list, to, run_list);
     when_called(*status, to, [&to](ServerConnection& connection) { return run_status(connection, to.job); });
     when_called(*watch, to, [&to](ServerConnection& connection) {
-        return run_watch(connection, to.job, to.submit.timeout_s);
+        return run_watch(connection, to.job, {.timeout_s = to.submit.timeout_s});
     });
+    when_called(*wait, to, [&to](ServerConnection& connection) {
+        return run_watch(connection, to.job, {.timeout_s = to.submit.timeout_s, .quiet = true});
+    });
+    when_called(*retry, to, [&to](ServerConnection& connection) { return run_retry(connection, to.job); });
     when_called(*cancel, to, [&to](ServerConnection& connection) { return run_cancel(connection, to.job); });
     when_called(*pull, to, [&to](ServerConnection& connection) {
         return run_pull(connection, to.job, to.folder, to.submit.replace);
@@ -146,6 +154,9 @@ int main(int argc, char** argv) {
                client::server_file_path() + " (docs/client.md).\n\n" + cli::exit_code_help("bake"));
     client::Arguments arguments;
     client::add_connection_options(app, arguments.connection);
+    app.add_flag("--warnings-as-errors",
+                 arguments.warnings_as_errors,
+                 "End with exit status 3 where there was a warning and nothing worse");
     client::add_map_commands(app, arguments);
     client::add_job_commands(app, arguments);
     client::add_cache_command(app, arguments);
@@ -156,5 +167,10 @@ int main(int argc, char** argv) {
     auto connection = client::connect(arguments.connection);
     if (!connection)
         return cli::complain(connection.error());
-    return cli::end_program(arguments.run(*connection));
+    auto ended = arguments.run(*connection);
+    const std::size_t warnings = cli::warnings_told().size();
+    if (ended && *ended == cli::exit_done && arguments.warnings_as_errors && warnings > 0)
+        ended = cli::fail(cli::exit_invalid,
+                          std::to_string(warnings) + " warnings, and --warnings-as-errors makes them errors");
+    return cli::end_program(ended);
 }

@@ -185,6 +185,13 @@ Result<JobView> Farm::cancel_job(std::int64_t id) {
     return get_job(id);
 }
 
+Result<JobView> Farm::retry_job(std::int64_t id) {
+    if (auto retried = farm::retry_job(*database_, id, book_); !retried)
+        return tl::unexpected(retried.error());
+    executor_->wake();
+    return get_job(id);
+}
+
 Result<JobView> Farm::wait_for_change(std::int64_t id,
                                       std::uint64_t seen,
                                       std::chrono::milliseconds patience) {

@@ -73,6 +73,8 @@ class Farm {
     // Newest first, ids below `before`.
     [[nodiscard]] store::Result<std::vector<JobView>> list_jobs(std::int64_t before, std::size_t count);
     [[nodiscard]] store::Result<JobView> cancel_job(std::int64_t id);
+    // Bakes again what has failed.
+    [[nodiscard]] store::Result<JobView> retry_job(std::int64_t id);
     // Waits until the job's version is above `seen` or the time is over.
     [[nodiscard]] store::Result<JobView> wait_for_change(std::int64_t id,
                                                          std::uint64_t seen,

@@ -11,9 +11,6 @@ void JobBook::add(JobRow row,
                   std::span<const WantedSector> wanted,
                   std::vector<std::string> warnings,
                   double expected_s) {
-    // A map from before there were inventories is like no other.
-    const Digest& content = row.inventory == Digest{} ? row.manifest : row.inventory;
-    BakeKey key{reuse::results_key(row.settings.bake), content, {}, 0};
     const std::lock_guard lock(mutex_);
     Job& job = jobs_[row.id];
     job.row = std::move(row);
@@ -21,6 +18,25 @@ void JobBook::add(JobRow row,
     job.expected_s = expected_s;
     if (!job.row.request_id.empty())
         by_request_[job.row.request_id] = job.row.id;
+    want(job, wanted);
+}
+
+void JobBook::reopen(const JobRow& row, std::span<const WantedSector> wanted) {
+    const std::lock_guard lock(mutex_);
+    Job& job = jobs_.at(row.id);
+    job.row = row;
+    job.started.reset();
+    job.rays = 0;
+    job.baked = 0;
+    job.expected_s = 0;
+    want(job, wanted);
+    changed(job);
+}
+
+void JobBook::want(Job& job, std::span<const WantedSector> wanted) {
+    // A map from before there were inventories is like no other.
+    const Digest& content = job.row.inventory == Digest{} ? job.row.manifest : job.row.inventory;
+    BakeKey key{reuse::results_key(job.row.settings.bake), content, {}, 0};
     for (const WantedSector& sector : wanted) {
         key.sector = sector.sector;
         const std::uint64_t id = task_for(job, sector, key);

@@ -65,6 +65,9 @@ class JobBook {
              std::vector<std::string> warnings = {},
              double expected_s = 0);
 
+    // A job that had ended, and goes on with these sectors.
+    void reopen(const JobRow& row, std::span<const WantedSector> wanted);
+
     // The job of a request id. While nobody has it, the caller may make one, and others wait; it must call
     // end_request.
     [[nodiscard]] std::optional<std::int64_t> begin_request(const std::string& request_id);
@@ -117,6 +120,7 @@ class JobBook {
         bool running = false;
     };
 
+    void want(Job& job, std::span<const WantedSector> wanted);
     // `key` is the sector's, but for its tolerance.
     [[nodiscard]] std::uint64_t task_for(const Job& job, const WantedSector& wanted, BakeKey key);
     void drop_tasks(Job& job);

@@ -149,6 +149,44 @@ std::vector<WantedSector> wanted_by(const Plan& plan) {
     return wanted;
 }
 
+store::Result<void> retry_job(Database& database, std::int64_t id, JobBook& book) {
+    const auto view = book.view(id);
+    if (!view)
+        return store::fail(store::ErrorCode::not_found, fmt::format("there is no job {}", id));
+    std::optional<JobRow> reopened;
+    std::vector<WantedSector> wanted;
+    const auto done = database.write([&](Connection& connection) {
+        auto job = find_job(connection, id);
+        if (!job || !job->sound || job->row.state == JobState::running || job->row.sectors_failed == 0)
+            return;
+        std::vector<Checked<JobSectorRow>> sectors = sectors_of_job(connection, id);
+        for (Checked<JobSectorRow>& sector : sectors) {
+            if (sector.row.state != SectorState::failed)
+                continue;
+            sector.row = waiting_row(id, sector.row.sector);
+            replace_sector(connection, sector.row);
+        }
+        JobRow row = job->row;
+        row.state = JobState::running;
+        row.error.clear();
+        row.ended_ms = 0;
+        recount(connection, sectors, row);
+        wanted = waiting_of(sectors);
+        reopened = std::move(row);
+    });
+    if (!done)
+        return done;
+    if (!reopened) {
+        const char* why =
+            view->row.state == JobState::running ? "it still runs" : "no sector of it has failed";
+        return store::fail(store::ErrorCode::failed_precondition,
+                           fmt::format("job {} cannot be retried: {}", id, why));
+    }
+    spdlog::info("job {} is retried: {} sectors", id, wanted.size());
+    book.reopen(*reopened, wanted);
+    return {};
+}
+
 store::Result<void> load_jobs(Database& database, JobBook& book) {
     return database.write([&](Connection& connection) {
         remove_unfinished_jobs(connection);

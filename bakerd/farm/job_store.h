@@ -22,6 +22,10 @@ namespace drtv::farm {
 // The sectors of a plan that have to be baked, in its order.
 [[nodiscard]] std::vector<WantedSector> wanted_by(const Plan& plan);
 
+// Makes the failed sectors of a job that has ended wait again, and tells the book. Fails where there is no
+// such job or sector.
+[[nodiscard]] store::Result<void> retry_job(Database& database, std::int64_t id, JobBook& book);
+
 // Tells the book of all jobs that the database has, and resumes those that were running. Rows that are not as
 // they were written do not count: a sector is baked again, a job has failed.
 [[nodiscard]] store::Result<void> load_jobs(Database& database, JobBook& book);

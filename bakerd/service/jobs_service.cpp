@@ -189,6 +189,15 @@ grpc::Status JobsService::CancelJob(grpc::ServerContext*,
     return answer(farm_.cancel_job(*id), response);
 }
 
+grpc::Status JobsService::RetryJob(grpc::ServerContext*,
+                                   const v1::RetryJobRequest* request,
+                                   v1::Job* response) {
+    const auto id = job_from_name(request->name());
+    if (!id)
+        return to_status(id.error());
+    return answer(farm_.retry_job(*id), response);
+}
+
 grpc::Status JobsService::WatchJob(grpc::ServerContext* context,
                                    const v1::WatchJobRequest* request,
                                    grpc::ServerWriter<v1::Job>* writer) {

@@ -121,10 +121,15 @@ grpc::Status SectorsService::send(const farm::JobSectorView& view,
                                   grpc::ServerWriter<v1::PullSectorsResponse>& writer,
                                   std::size_t& buffered_bytes) {
     const auto bytes = farm_.blobs().get(view.row.file);
-    if (!bytes)
-        return failed(
-            grpc::StatusCode::DATA_LOSS,
-            fmt::format("sector ({}, {}): {}", view.row.sector.i, view.row.sector.j, bytes.error().message));
+    if (!bytes) {
+        // Where the server keeps it says nothing to a client.
+        const bool is_gone = bytes.error().code == store::ErrorCode::not_found;
+        return failed(grpc::StatusCode::DATA_LOSS,
+                      fmt::format("the file of sector ({}, {}) is {}",
+                                  view.row.sector.i,
+                                  view.row.sector.j,
+                                  is_gone ? "no longer kept" : "damaged"));
+    }
     v1::PullSectorsResponse message;
     fill(view, *message.mutable_sector());
     // The first bytes come with the sector: most files are one message.

@@ -63,6 +63,9 @@ class JobsService final : public v1::Jobs::Service {
     grpc::Status CancelJob(grpc::ServerContext* context,
                            const v1::CancelJobRequest* request,
                            v1::Job* response) override;
+    grpc::Status RetryJob(grpc::ServerContext* context,
+                          const v1::RetryJobRequest* request,
+                          v1::Job* response) override;
     grpc::Status WatchJob(grpc::ServerContext* context,
                           const v1::WatchJobRequest* request,
                           grpc::ServerWriter<v1::Job>* writer) override;

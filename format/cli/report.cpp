@@ -7,11 +7,13 @@
 #include <cstdio>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace drtv::cli {
 namespace {
 
 bool as_json = false;
+std::vector<std::string> warnings;
 
 void say(const char* kind,
          std::string_view before,
@@ -48,7 +50,12 @@ ExitCode complain(const Failure& failure) {
 }
 
 void warn(const std::string& sentence) {
+    warnings.push_back(sentence);
     say("warning", "warning: ", sentence, std::nullopt);
+}
+
+const std::vector<std::string>& warnings_told() {
+    return warnings;
 }
 
 void note(const std::string& sentence) {

@@ -5,6 +5,7 @@
 #include "cli/failure.h"
 
 #include <string>
+#include <vector>
 
 namespace drtv::cli {
 
@@ -16,6 +17,9 @@ ExitCode complain(const Failure& failure);
 
 // "drtv: warning: <sentence>"
 void warn(const std::string& sentence);
+
+// All warnings so far.
+[[nodiscard]] const std::vector<std::string>& warnings_told();
 
 // "drtv: <sentence>": neither wrong nor a warning.
 void note(const std::string& sentence);

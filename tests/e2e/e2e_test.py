@@ -652,7 +652,7 @@ class Client(FarmTest):
         out = self.farm.path("out")
         done = self.farm.bake(daemon, "submit", path, *FEW_RAYS, "--set", "reach=8", "--pull", out)
         self.assert_sentence(done, "sectors failed; sector (0, 0)", "light groups", status=JOB_FAILED)
-        self.assertEqual(os.listdir(out), ["sector_2_0.drtv"])
+        self.assertEqual(list(read_folder(out)), ["sector_2_0.drtv"])
         self.assertEqual(self.farm.bake(daemon, "watch", "1").returncode, JOB_FAILED)
         self.assertEqual(self.farm.bake(daemon, "pull", "1", "--out", out).returncode, JOB_FAILED)
 
@@ -712,6 +712,114 @@ class Client(FarmTest):
             for name in os.listdir(disk):
                 self.assertTrue(name.endswith(".drtv"), name)
                 self.assertEqual(self.farm.run("drtv", "validate", os.path.join(disk, name)).returncode, 0)
+
+
+class Verdicts(FarmTest):
+    """What a script can trust."""
+
+    def test_a_map_without_a_probe_is_no_success(self):
+        daemon = self.farm.daemon()
+        low_roof = [(x, y, 1) for x, y, z in LAWN[::-1]]
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN, roof=low_roof)
+        out = self.farm.path("out")
+        for command in (
+            ("submit", path, *FEW_RAYS, "--pull", out),
+            ("watch", "1"),
+            ("pull", "1", "--out", out),
+        ):
+            done = self.farm.bake(daemon, *command)
+            self.assert_sentence(done, "no probe was placed", "inside out?", status=INVALID)
+
+    def test_warnings_are_errors_where_that_is_asked_for(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        strict = ("--warnings-as-errors", "submit", path, *FEW_RAYS, "--wait")
+        self.assertEqual(self.farm.bake(daemon, *strict).returncode, 0)
+        done = self.farm.bake(daemon, *strict, "--set", "rays=32")
+        self.assertEqual(done.returncode, INVALID)
+        self.assertIn("1 warnings, and --warnings-as-errors makes them errors", done.stderr)
+
+    def test_the_last_line_says_all(self):
+        daemon = self.farm.daemon()
+        wide = [(x * 400, y * 400, z) for x, y, z in LAWN]
+        path = write_map(self.farm.path("map.gltf"), lawn=wide)
+        submit = ("--json", "submit", path, *FEW_RAYS, "--region", "450,450,500,500", "--pull")
+        for name, baked in (("first", 1), ("second", 0)):
+            done = self.farm.bake(daemon, *submit, self.farm.path(name))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            last = last_object(done)
+            self.assertEqual((last["kind"], last["state"]), ("job", "succeeded"))
+            self.assertEqual(
+                (last["sectors_total"], last["sectors_baked"], last["sectors_cached"]), (1, baked, 1 - baked)
+            )
+            self.assertEqual(len(last["warnings"]), 1)
+            self.assertIn("12.0 km across", last["warnings"][0])
+            self.assertGreaterEqual(last["seconds"], 0)
+
+    def test_wait_says_the_end_alone(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        self.farm.bake(daemon, "submit", path, *FEW_RAYS)
+        done = self.farm.bake(daemon, "wait", "1")
+        self.assertEqual((done.returncode, done.stdout.count("\n")), (0, 1), done.stderr)
+        done = self.farm.bake(daemon, "--json", "wait", "1")
+        self.assertEqual((done.returncode, last_object(done)["state"]), (0, "succeeded"))
+        self.farm.bake(daemon, "submit", self.island())
+        done = self.farm.bake(daemon, "wait", "2", "--timeout", "0.3")
+        self.assertEqual(done.returncode, TIMEOUT, done.stderr)
+
+    def test_a_job_behind_another_waits(self):
+        daemon = self.farm.daemon("data", "--threads", "1")
+        self.farm.bake(daemon, "submit", self.island())
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        done = self.farm.bake(daemon, "--json", "submit", path, *FEW_RAYS)
+        self.assertEqual(last_object(done)["state"], "waiting")
+        self.assertIn(" waiting ", self.farm.bake(daemon, "list").stdout)
+        cancelled = self.farm.bake(daemon, "--json", "cancel", "1")
+        self.assertEqual(self.farm.bake(daemon, "wait", "2").returncode, 0)
+        # What was cancelled changes no more.
+        time.sleep(0.5)
+        before, after = last_object(cancelled), self.farm.job(daemon, 1)
+        self.assertEqual(before["state"], "cancelled")
+        self.assertEqual({**before, "warnings": []}, {**after, "warnings": []})
+
+    def test_retry_bakes_what_failed_and_nothing_else(self):
+        daemon = self.farm.daemon()
+        path = with_lamps(
+            write_map(self.farm.path("lamps.gltf"), lawn=LAWN, far=[(x + 130, y, z) for x, y, z in LAWN]),
+            groups=9,
+        )
+        done = self.farm.bake(daemon, "submit", path, *FEW_RAYS, "--set", "reach=8", "--wait")
+        self.assertEqual(done.returncode, JOB_FAILED)
+        retried = last_object(self.farm.bake(daemon, "--json", "retry", "1"))
+        self.assertEqual((retried["sectors_done"], retried["sectors_failed"], retried["ended"]), (1, 0, 0))
+        self.assertEqual(self.farm.bake(daemon, "wait", "1").returncode, JOB_FAILED)
+        # It stands in the database: a restart finds it, and a cause that is gone ends well.
+        job = self.farm.job(daemon, 1)
+        self.assertEqual((job["state"], job["sectors_done"], job["sectors_failed"]), ("failed", 1, 1))
+        daemon.stop()
+        daemon.start()
+        self.assertEqual(self.farm.job(daemon, 1)["sectors_failed"], 1)
+        self.assertEqual(self.farm.bake(daemon, "retry", "1").returncode, 0)
+        self.assertEqual(self.farm.bake(daemon, "wait", "1").returncode, JOB_FAILED)
+        lawn = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        self.farm.bake(daemon, "submit", lawn, *FEW_RAYS, "--wait")
+        done = self.farm.bake(daemon, "retry", "2")
+        self.assert_sentence(done, "job 2 cannot be retried: no sector of it has failed", status=USAGE)
+        self.assert_sentence(self.farm.bake(daemon, "retry", "7"), "there is no job 7", status=USAGE)
+
+    def test_evicted_results_are_named_by_sector(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        self.farm.bake(daemon, "submit", path, *FEW_RAYS, "--wait")
+        self.farm.bake(daemon, "cache", "--clear")
+        done = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("out"))
+        self.assert_sentence(
+            done,
+            "the file of sector (0, 0) is no longer kept; submit the map again to bake it again",
+            status=UNREADABLE,
+        )
+        self.assertNotIn(self.farm.scratch.name + "/data", done.stderr)
 
 
 class Pull(FarmTest):
