@@ -115,11 +115,6 @@ Result<JobView> Farm::create_planned(const JobRequest& request, const std::funct
     JobRow job = new_job(request, planned->inventory);
     if (auto written = write_job(*database_, planned->plan, job); !written)
         return tl::unexpected(written.error());
-    spdlog::info("job {}: {} sectors, {} of them in the cache, {} nearly so",
-                 job.id,
-                 job.sectors_total,
-                 job.sectors_cached,
-                 job.sectors_near);
     const std::int64_t id = job.id;
     book_.add(std::move(job),
               wanted_by(planned->plan),

@@ -3,7 +3,6 @@
 #include "bakerd/reuse/footprint.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace drtv::farm {
 
@@ -197,61 +196,6 @@ void JobBook::forget(std::uint64_t id) {
 void JobBook::changed(Job& job) {
     ++job.version;
     changed_.notify_all();
-}
-
-JobView JobBook::view_of(const Job& job) {
-    JobView view;
-    view.row = job.row;
-    view.rays = job.rays;
-    view.version = job.version;
-    view.warnings = job.warnings;
-    if (job.row.state != JobState::running)
-        return view;
-    view.waiting = !job.started;
-    view.seconds_left = job.expected_s;
-    if (job.started && job.baked > 0) {
-        const double seconds = std::chrono::duration<double>(Clock::now() - *job.started).count();
-        view.rays_per_second = static_cast<double>(job.rays) / seconds;
-        const std::int64_t left = job.row.sectors_total - job.row.sectors_done - job.row.sectors_failed;
-        view.seconds_left = seconds / static_cast<double>(job.baked) * static_cast<double>(left);
-    }
-    return view;
-}
-
-std::optional<JobView> JobBook::view(std::int64_t id) const {
-    const std::lock_guard lock(mutex_);
-    const auto found = jobs_.find(id);
-    return found == jobs_.end() ? std::nullopt : std::optional(view_of(found->second));
-}
-
-std::vector<JobView> JobBook::list(std::int64_t before, std::size_t count) const {
-    const std::lock_guard lock(mutex_);
-    std::vector<JobView> views;
-    auto entry = std::make_reverse_iterator(jobs_.lower_bound(before));
-    for (; entry != jobs_.rend() && views.size() < count; ++entry)
-        views.push_back(view_of(entry->second));
-    return views;
-}
-
-std::optional<JobView> JobBook::wait_for_change(std::int64_t id,
-                                                std::uint64_t seen,
-                                                std::chrono::milliseconds patience) {
-    std::unique_lock lock(mutex_);
-    const auto found = jobs_.find(id);
-    if (found == jobs_.end())
-        return std::nullopt;
-    // Jobs are never removed, and a map keeps its elements in place.
-    changed_.wait_for(lock, patience, [&] { return found->second.version > seen; });
-    return view_of(found->second);
-}
-
-bool JobBook::is_running(std::int64_t id, map::SectorCoordinate sector) const {
-    const std::lock_guard lock(mutex_);
-    const auto job = jobs_.find(id);
-    if (job == jobs_.end())
-        return false;
-    const auto task = job->second.tasks.find(sector);
-    return task != job->second.tasks.end() && tasks_.at(task->second).running;
 }
 
 }  // namespace drtv::farm

@@ -134,6 +134,12 @@ store::Result<void> write_job(Database& database, const Plan& plan, JobRow& job)
             update_job(connection, job);
             count_sectors(connection, job.sectors_cached, job.sectors_near, 0);
         });
+    if (done)
+        spdlog::info("job {}: {} sectors, {} of them in the cache, {} nearly so",
+                     job.id,
+                     job.sectors_total,
+                     job.sectors_cached,
+                     job.sectors_near);
     // If this is refused as well, the next start removes it.
     if (!done && job.id != 0)
         static_cast<void>(database.write([&](Connection& connection) { remove_job(connection, job.id); }));
