@@ -49,7 +49,12 @@ cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
                                           const SubmitOptions& options) {
     auto pull = FolderPull::open(connection, number, options.pull_folder, options.replace);
     if (!pull)
-        return tl::unexpected(pull.error());
+        return cli::fail(pull.error().code,
+                         fmt::format("{}; job {} goes on, pull it with: bake pull {} --out {}",
+                                     pull.error().sentence,
+                                     number,
+                                     number,
+                                     options.pull_folder));
     cli::Result<void> pulled;
     std::int64_t done = 0;
     const auto pull_new = [&](const v1::Job& now) {
@@ -57,6 +62,9 @@ cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
             return;
         done = now.sectors_done();
         pulled = pull->pull();
+        // The end tries again.
+        if (!pulled && pulled.error().may_pass)
+            pulled = {};
     };
     const auto job = watch_job(connection, number, {.timeout_s = options.timeout_s, .progressed = pull_new});
     if (!job && job.error().code == cli::exit_interrupted)

@@ -59,7 +59,8 @@ grpc::Status follow(ServerConnection& connection,
                     Progress& progress,
                     const WatchOptions& options,
                     const Deadline& deadline,
-                    v1::Job& last) {
+                    v1::Job& last,
+                    bool& heard) {
     v1::WatchJobRequest request;
     request.set_name(name);
     grpc::ClientContext context;
@@ -70,6 +71,7 @@ grpc::Status follow(ServerConnection& connection,
     v1::Job job;
     while (reader->Read(&job)) {
         last = job;
+        heard = true;
         if (options.progressed)
             options.progressed(job);
         if (options.quiet || has_ended(job))
@@ -98,8 +100,8 @@ cli::Result<v1::Job> watch_job(ServerConnection& connection,
     auto last_contact = std::chrono::steady_clock::now();
     bool told = false;
     for (;;) {
-        const std::string state_before = job.SerializeAsString();
-        const grpc::Status status = follow(connection, name, progress, options, deadline, job);
+        bool heard = false;
+        const grpc::Status status = follow(connection, name, progress, options, deadline, job, heard);
         progress.clear();
         if (interrupted()) {
             return cli::fail(cli::exit_interrupted,
@@ -117,7 +119,7 @@ cli::Result<v1::Job> watch_job(ServerConnection& connection,
         }
         if (status.error_code() != grpc::StatusCode::UNAVAILABLE)
             return tl::unexpected(connection.failure(status));
-        if (job.SerializeAsString() != state_before)
+        if (heard)
             last_contact = std::chrono::steady_clock::now();
         if (job.name().empty() || std::chrono::steady_clock::now() - last_contact > reconnect_patience)
             return tl::unexpected(connection.failure(status));

@@ -2,18 +2,16 @@
 
 #include "client/server_file.h"
 #include "drtv/v1/error.pb.h"
+#include "format/folder/whole_file.h"
 
 #include <drtv/version.h>
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <initializer_list>
 #include <optional>
 #include <utility>
 
@@ -22,26 +20,26 @@ namespace {
 
 using Credentials = std::shared_ptr<grpc::ChannelCredentials>;
 
-cli::Result<void> read_pem(const std::string& path, std::string& text) {
+cli::Result<std::string> read_pem(const std::string& path) {
     if (path.empty())
         return cli::fail(cli::exit_usage, "TLS needs all three of --tls-ca, --tls-cert and --tls-key");
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        return cli::fail(cli::exit_unreadable, fmt::format("cannot read {}: {}", path, std::strerror(errno)));
-    text.assign(std::istreambuf_iterator<char>(file), {});
-    return {};
+    return folder::read_whole(path);
 }
 
 cli::Result<Credentials> credentials(const ConnectionOptions& options) {
     if (options.tls_ca.empty() && options.tls_key.empty() && options.tls_certificate.empty())
         return grpc::InsecureChannelCredentials();
     grpc::SslCredentialsOptions tls;
-    if (auto read = read_pem(options.tls_ca, tls.pem_root_certs); !read)
-        return tl::unexpected(read.error());
-    if (auto read = read_pem(options.tls_key, tls.pem_private_key); !read)
-        return tl::unexpected(read.error());
-    if (auto read = read_pem(options.tls_certificate, tls.pem_cert_chain); !read)
-        return tl::unexpected(read.error());
+    const std::initializer_list<std::pair<const std::string*, std::string*>> files = {
+        {&options.tls_ca, &tls.pem_root_certs},
+        {&options.tls_key, &tls.pem_private_key},
+        {&options.tls_certificate, &tls.pem_cert_chain}};
+    for (const auto& [path, text] : files) {
+        auto read = read_pem(*path);
+        if (!read)
+            return tl::unexpected(read.error());
+        *text = std::move(*read);
+    }
     return grpc::SslCredentials(tls);
 }
 
@@ -87,7 +85,8 @@ cli::Failure ServerConnection::failure(const grpc::Status& status, cli::ExitCode
     const bool from_server =
         details.ParseFromString(status.error_details()) && !details.server_version().empty();
     if (!from_server && status.error_code() == grpc::StatusCode::UNAVAILABLE)
-        return {cli::exit_server, fmt::format("cannot reach bakerd at {}: is it running?", options.server)};
+        return {
+            cli::exit_server, fmt::format("cannot reach bakerd at {}: is it running?", options.server), true};
     if (!from_server) {
         const int code = static_cast<int>(status.error_code());
         return {

@@ -41,20 +41,6 @@ bool is_file(const std::string& path, const std::string& sha256, std::int64_t si
     return folder::sha256_of_file(path).value_or("") == sha256;
 }
 
-// Of writes that a kill or a power cut broke off.
-void remove_leftovers(const std::string& folder) {
-    constexpr std::chrono::minutes old{10};
-    std::error_code code;
-    const auto now = fs::file_time_type::clock::now();
-    for (const auto& entry : fs::directory_iterator(folder, code)) {
-        const std::string name = entry.path().filename().string();
-        const bool is_part = name.starts_with("sector") && name.find(".part") != std::string::npos;
-        std::error_code ignored;
-        if (is_part && now - entry.last_write_time(ignored) > old)
-            fs::remove(entry.path(), ignored);
-    }
-}
-
 }  // namespace
 
 cli::Result<FolderPull> FolderPull::open(ServerConnection& connection,
@@ -70,20 +56,63 @@ cli::Result<FolderPull> FolderPull::open(ServerConnection& connection,
     if (const grpc::Status status = call(*connection.maps, &v1::Maps::Stub::GetMap, request, map);
         !status.ok())
         return tl::unexpected(connection.failure(status));
-    auto earlier = earlier_manifest(folder, map, replace);
-    if (!earlier)
-        return tl::unexpected(earlier.error());
-    FolderPull pull(connection, std::move(*found), std::move(folder));
-    pull.earlier_ = std::move(*earlier);
-    pull.manifest_ = manifest_of(map, pull.job_, connection.server);
+    FolderPull pull(connection, std::move(*found), std::move(map), std::move(folder), replace);
+    if (auto read = pull.read_earlier(); !read)
+        return tl::unexpected(read.error());
+    pull.manifest_ = manifest_of(pull.map_, pull.job_, connection.server);
     return pull;
 }
 
+cli::Result<void> FolderPull::read_earlier() {
+    auto earlier = earlier_manifest(folder_, map_, replace_);
+    if (!earlier)
+        return tl::unexpected(earlier.error());
+    earlier_ = std::move(*earlier);
+    return {};
+}
+
 cli::Result<void> FolderPull::pull() {
-    auto wanted = missing_files();
+    auto last_progress = std::chrono::steady_clock::now();
+    bool told = false;
+    for (;;) {
+        const std::size_t pulled_before = pulled_.size();
+        auto done = pull_once();
+        if (done || !done.error().may_pass)
+            return done;
+        const auto now = std::chrono::steady_clock::now();
+        if (pulled_.size() > pulled_before)
+            last_progress = now;
+        if (now - last_progress > patience)
+            return done;
+        if (!told)
+            cli::note(fmt::format(
+                "lost bakerd at {}; trying again for {} s", connection_.options.server, patience.count()));
+        told = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    }
+}
+
+cli::Result<void> FolderPull::pull_once() {
+    const auto wanted = missing_files();
     if (!wanted)
         return tl::unexpected(wanted.error());
-    return fetch(*wanted);
+    if (wanted->sectors().empty())
+        return {};
+    if (auto begun = write_begun(wanted->sectors_size()); !begun)
+        return begun;
+    return stream_sectors(connection_, *wanted, folder_, [this](const v1::Sector& sector) {
+        const folder::SectorPlace place(sector.coordinate().j(), sector.coordinate().i());
+        here_.insert(place);
+        pulled_.insert(place);
+    });
+}
+
+cli::Result<void> FolderPull::write_begun(std::int64_t wanted) {
+    folder::FolderManifest begun = manifest_;
+    begun.unfinished += wanted;
+    if (earlier_)
+        begun.files.insert(earlier_->files.begin(), earlier_->files.end());
+    return folder::write_whole(folder::manifest_path(folder_), folder::manifest_text(begun));
 }
 
 cli::Result<void> FolderPull::finish() {
@@ -91,13 +120,14 @@ cli::Result<void> FolderPull::finish() {
     if (!lock)
         return tl::unexpected(lock.error());
     // Another pull may have been here since.
-    looked_at_.clear();
+    if (auto read = read_earlier(); !read)
+        return read;
+    here_.clear();
     manifest_.files.clear();
-    unchanged_ = -pulled_;  // what this pull wrote is not counted as found
     if (auto pulled = pull(); !pulled)
         return pulled;
     leave_or_remove_earlier_files();
-    remove_leftovers(folder_);
+    folder::remove_leftovers(folder_);
     if (auto synced = folder::sync_folder(folder_); !synced)
         return synced;
     return folder::write_whole(folder::manifest_path(folder_), folder::manifest_text(manifest_));
@@ -110,8 +140,8 @@ cli::Result<v1::PullSectorsRequest> FolderPull::missing_files() {
     // One look at the folder is cheaper than one at each file that is not there.
     names_there_.clear();
     std::error_code code;
-    for (const auto& entry : fs::directory_iterator(folder_, code))
-        names_there_.insert(entry.path().filename().string());
+    for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code))
+        names_there_.insert(entry->path().filename().string());
     v1::ListSectorsRequest request;
     request.set_job(job_.name());
     request.set_page_size(2'000);
@@ -136,45 +166,12 @@ void FolderPull::note_sector(const v1::Sector& sector, v1::PullSectorsRequest& w
     }
     const folder::SectorPlace place(sector.coordinate().j(), sector.coordinate().i());
     manifest_.files[place] = {sector.sha256(), sector.size_bytes(), manifest_.map};
-    if (!looked_at_.insert(place).second)
+    if (here_.contains(place))
         return;
     if (has_file_of(sector))
-        ++unchanged_;
+        here_.insert(place);
     else
         *wanted.add_sectors() = sector.coordinate();
-}
-
-cli::Result<void> FolderPull::fetch(const v1::PullSectorsRequest& wanted) {
-    v1::PullSectorsRequest left = wanted;
-    auto last_progress = std::chrono::steady_clock::now();
-    bool told = false;
-    while (!left.sectors().empty()) {
-        std::set<folder::SectorPlace> written;
-        const auto streamed = stream_sectors(connection_, left, folder_, [&](const v1::Sector& sector) {
-            written.emplace(sector.coordinate().j(), sector.coordinate().i());
-            ++pulled_;
-        });
-        if (streamed)
-            return {};
-        const auto now = std::chrono::steady_clock::now();
-        if (!written.empty())
-            last_progress = now;
-        if (streamed.error().code != cli::exit_server || now - last_progress > patience)
-            return streamed;
-        if (!told)
-            cli::note(fmt::format(
-                "lost bakerd at {}; trying again for {} s", connection_.options.server, patience.count()));
-        told = true;
-        v1::PullSectorsRequest rest;
-        rest.set_job(left.job());
-        for (const v1::SectorCoordinate& place : left.sectors()) {
-            if (!written.contains({place.j(), place.i()}))
-                *rest.add_sectors() = place;
-        }
-        left = std::move(rest);
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    }
-    return {};
 }
 
 bool FolderPull::has_file_of(const v1::Sector& sector) const {
@@ -214,21 +211,23 @@ void FolderPull::leave_or_remove_earlier_files() {
 }
 
 void FolderPull::report() const {
+    const auto pulled = static_cast<std::int64_t>(pulled_.size());
+    const auto unchanged = static_cast<std::int64_t>(here_.size()) - pulled;
     if (connection_.options.json) {
         nlohmann::ordered_json json;
         json["kind"] = "pull";
         json["job"] = job_number(job_);
         json["folder"] = folder_;
-        json["pulled"] = pulled_;
-        json["unchanged"] = unchanged_;
+        json["pulled"] = pulled;
+        json["unchanged"] = unchanged;
         json["removed"] = removed_;
         json["unfinished"] = manifest_.unfinished;
         std::puts(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
         return;
     }
-    std::string text = fmt::format("{}: {} sector files pulled", folder_, with_thousands(pulled_));
-    if (unchanged_ > 0)
-        text += fmt::format(", {} were there already", with_thousands(unchanged_));
+    std::string text = fmt::format("{}: {} sector files pulled", folder_, with_thousands(pulled));
+    if (unchanged > 0)
+        text += fmt::format(", {} were there already", with_thousands(unchanged));
     if (removed_ > 0)
         text += fmt::format(", {} removed that the map no longer has", with_thousands(removed_));
     if (manifest_.unfinished > 0)

@@ -35,25 +35,33 @@ class FolderPull {
     void report() const;
 
   private:
-    FolderPull(ServerConnection& connection, v1::Job job, std::string folder)
-        : connection_(connection), job_(std::move(job)), folder_(std::move(folder)) {}
+    FolderPull(ServerConnection& connection, v1::Job job, v1::Map map, std::string folder, bool replace)
+        : connection_(connection),
+          job_(std::move(job)),
+          map_(std::move(map)),
+          folder_(std::move(folder)),
+          replace_(replace) {}
 
+    [[nodiscard]] cli::Result<void> read_earlier();
+    [[nodiscard]] cli::Result<void> pull_once();
     // Those that are done, of which the folder has no right file.
     [[nodiscard]] cli::Result<v1::PullSectorsRequest> missing_files();
-    [[nodiscard]] cli::Result<void> fetch(const v1::PullSectorsRequest& wanted);
     void note_sector(const v1::Sector& sector, v1::PullSectorsRequest& wanted);
     [[nodiscard]] bool has_file_of(const v1::Sector& sector) const;
+    // Until the end the folder's manifest says that it is not whole, and what was there.
+    [[nodiscard]] cli::Result<void> write_begun(std::int64_t wanted);
     void leave_or_remove_earlier_files();
 
     ServerConnection& connection_;
     v1::Job job_;
+    v1::Map map_;
     const std::string folder_;
+    const bool replace_;
     std::optional<folder::FolderManifest> earlier_;
     folder::FolderManifest manifest_;
     std::unordered_set<std::string> names_there_;  // in the folder
-    std::set<folder::SectorPlace> looked_at_;      // of sectors that are done
-    std::int64_t pulled_ = 0;
-    std::int64_t unchanged_ = 0;
+    std::set<folder::SectorPlace> here_;           // sectors of the job whose files are right
+    std::set<folder::SectorPlace> pulled_;         // those that this pull wrote
     std::int64_t removed_ = 0;
 };
 

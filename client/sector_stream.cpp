@@ -57,6 +57,9 @@ class Writers {
         return result_;
     }
 
+    // REQUIRES: finished.
+    [[nodiscard]] int count() const { return count_; }
+
   private:
     static constexpr std::size_t max_waiting = 64;
     static constexpr std::size_t batch = 16;
@@ -81,6 +84,8 @@ class Writers {
             lock.lock();
             if (!done && result_)
                 result_ = done;
+            if (!done)
+                changed_.notify_all();
             for (std::size_t n = 0; n < written - (done ? 0 : 1); ++n)
                 tell(files[n].sector);
         }
@@ -142,6 +147,9 @@ cli::Result<void> stream_sectors(ServerConnection& connection,
         context.TryCancel();
     const grpc::Status status = reader->Finish();
     auto result = writers.finish();
+    if (result && status.ok() && !interrupted() && writers.count() < wanted.sectors_size())
+        result = cli::fail(cli::exit_server,
+                           fmt::format("bakerd sent {} of {} files", writers.count(), wanted.sectors_size()));
     if (interrupted())
         return cli::fail(cli::exit_interrupted, "interrupted; the same command goes on where this one ended");
     if (result && !status.ok())

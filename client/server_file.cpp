@@ -40,6 +40,10 @@ cli::Result<ServerFile> read_server_file(const std::string& path) {
                                       ? item.name == "server"
                                       : item.name == "address" || item.name == "tls-ca" ||
                                             item.name == "tls-cert" || item.name == "tls-key";
+            if (item.parents.empty() && item.name == "address")
+                return cli::fail(
+                    cli::exit_usage,
+                    fmt::format("{}: a server cannot be called 'default': give it another name", path));
             if (!is_known || item.inputs.size() != 1 || item.parents.size() > 1)
                 return cli::fail(
                     cli::exit_usage,

@@ -20,9 +20,10 @@ using Found = tl::expected<Value, std::string>;
 Found<void> add_folder(const fs::path& folder, const std::string& argument, Paths& documents) {
     const std::size_t count_before = documents.size();
     std::error_code code;
-    for (const auto& entry : fs::directory_iterator(folder, code)) {
-        if (is_document_name(entry.path().filename().string()) && fs::is_regular_file(entry.path(), code))
-            documents.push_back(entry.path());
+    for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+        std::error_code ignored;  // of a link that leads nowhere
+        if (is_document_name(entry->path().filename().string()) && entry->is_regular_file(ignored))
+            documents.push_back(entry->path());
     }
     if (code)
         return tl::unexpected(fmt::format("cannot read the folder {}: {}", argument, code.message()));

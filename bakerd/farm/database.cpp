@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <algorithm>
 
 namespace drtv::farm {
 namespace {
@@ -13,7 +14,8 @@ bool is_damage(int sqlite_code) {
     return sqlite_code == SQLITE_CORRUPT || sqlite_code == SQLITE_NOTADB;
 }
 
-tl::unexpected<store::Error> damaged(const std::string& path, const std::string& how) {
+tl::unexpected<store::Error> damaged(const std::string& path, std::string how) {
+    std::ranges::replace(how, '\n', ' ');
     return store::fail(
         store::ErrorCode::data_loss,
         fmt::format(

@@ -120,9 +120,9 @@ Result<JobView> Farm::create_planned(const JobRequest& request, const std::funct
               wanted_by(planned->plan),
               planned->plan.warnings,
               seconds_to_bake(planned->plan, options_.threads));
-    // Its client cannot know of it.
+    // Its client cannot know of it. Should it ask again, it gets another.
     if (is_left())
-        return cancel_job(id);
+        return cancel_job(id, true);
     executor_->wake();
     return get_job(id);
 }
@@ -156,7 +156,7 @@ Result<std::vector<JobView>> Farm::list_jobs(std::int64_t before, std::size_t co
     return views;
 }
 
-Result<JobView> Farm::cancel_job(std::int64_t id) {
+Result<JobView> Farm::cancel_job(std::int64_t id, bool forget_request) {
     if (!book_.view(id))
         return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
     std::optional<JobRow> cancelled;
@@ -167,6 +167,8 @@ Result<JobView> Farm::cancel_job(std::int64_t id) {
         job->row.state = job->sound ? JobState::cancelled : JobState::failed;
         job->row.error = job->sound ? "" : damaged_row;
         job->row.ended_ms = unix_milliseconds();
+        if (forget_request)
+            job->row.request_id.clear();
         update_job(connection, job->row);
         cancelled = std::move(job->row);
     });

@@ -72,7 +72,8 @@ class Farm {
     [[nodiscard]] store::Result<JobView> get_job(std::int64_t id);
     // Newest first, ids below `before`.
     [[nodiscard]] store::Result<std::vector<JobView>> list_jobs(std::int64_t before, std::size_t count);
-    [[nodiscard]] store::Result<JobView> cancel_job(std::int64_t id);
+    // With `forget_request` the job is no longer the answer to its request id.
+    [[nodiscard]] store::Result<JobView> cancel_job(std::int64_t id, bool forget_request = false);
     // Bakes again what has failed.
     [[nodiscard]] store::Result<JobView> retry_job(std::int64_t id);
     // Waits until the job's version is above `seen` or the time is over.

@@ -17,7 +17,7 @@ void JobBook::add(JobRow row,
     job.expected_s = expected_s;
     if (!job.row.request_id.empty())
         by_request_[job.row.request_id] = job.row.id;
-    want(job, wanted);
+    want(job, wanted, Join::any);
 }
 
 void JobBook::reopen(const JobRow& row, std::span<const WantedSector> wanted) {
@@ -28,27 +28,28 @@ void JobBook::reopen(const JobRow& row, std::span<const WantedSector> wanted) {
     job.rays = 0;
     job.baked = 0;
     job.expected_s = 0;
-    want(job, wanted);
+    want(job, wanted, Join::waiting);
     changed(job);
 }
 
-void JobBook::want(Job& job, std::span<const WantedSector> wanted) {
+void JobBook::want(Job& job, std::span<const WantedSector> wanted, Join join) {
     // A map from before there were inventories is like no other.
     const Digest& content = job.row.inventory == Digest{} ? job.row.manifest : job.row.inventory;
     BakeKey key{reuse::results_key(job.row.settings.bake), content, {}, 0};
     for (const WantedSector& sector : wanted) {
         key.sector = sector.sector;
-        const std::uint64_t id = task_for(job, sector, key);
+        const std::uint64_t id = task_for(job, sector, key, join);
         tasks_.at(id).jobs.insert(job.row.id);
         job.tasks[sector.sector] = id;
     }
 }
 
 // One that asks for the exact result serves as well: better than to bake the sector twice.
-std::uint64_t JobBook::task_for(const Job& job, const WantedSector& wanted, BakeKey key) {
+std::uint64_t JobBook::task_for(const Job& job, const WantedSector& wanted, BakeKey key, Join join) {
     for (const float tolerance : {0.0f, job.row.settings.tolerance}) {
         key.tolerance = tolerance;
-        if (const auto known = tasks_by_key_.find(key); known != tasks_by_key_.end())
+        const auto known = tasks_by_key_.find(key);
+        if (known != tasks_by_key_.end() && (join == Join::any || !tasks_.at(known->second).running))
             return known->second;
     }
     const std::uint64_t id = next_task_++;
@@ -155,6 +156,8 @@ void JobBook::update(const JobRow& row, const worker::SectorResult* result) {
     // Writers tell the book after they have written, in any order: an end is final.
     if (job.row.state != JobState::running)
         return;
+    if (row.request_id.empty())
+        by_request_.erase(job.row.request_id);
     job.row = row;
     if (result != nullptr) {
         ++job.baked;
@@ -189,7 +192,10 @@ void JobBook::drop_tasks(Job& job) {
 }
 
 void JobBook::forget(std::uint64_t id) {
-    tasks_by_key_.erase(tasks_.at(id).key);
+    // A later task may have taken its place.
+    const auto by_key = tasks_by_key_.find(tasks_.at(id).key);
+    if (by_key != tasks_by_key_.end() && by_key->second == id)
+        tasks_by_key_.erase(by_key);
     tasks_.erase(id);
 }
 

@@ -120,9 +120,11 @@ class JobBook {
         bool running = false;
     };
 
-    void want(Job& job, std::span<const WantedSector> wanted);
+    // One that is at work may be about to end with what the job has just heard.
+    enum class Join : std::uint8_t { any, waiting };
+    void want(Job& job, std::span<const WantedSector> wanted, Join join);
     // `key` is the sector's, but for its tolerance.
-    [[nodiscard]] std::uint64_t task_for(const Job& job, const WantedSector& wanted, BakeKey key);
+    [[nodiscard]] std::uint64_t task_for(const Job& job, const WantedSector& wanted, BakeKey key, Join join);
     void drop_tasks(Job& job);
     void forget(std::uint64_t id);
     void changed(Job& job);

@@ -163,7 +163,10 @@ store::Result<void> retry_job(Database& database, std::int64_t id, JobBook& book
     std::vector<WantedSector> wanted;
     const auto done = database.write([&](Connection& connection) {
         auto job = find_job(connection, id);
-        if (!job || !job->sound || job->row.state == JobState::running || job->row.sectors_failed == 0)
+        // What the database has written, the book may not have been told yet.
+        const bool has_ended =
+            job && job->row.state != JobState::running && view->row.state != JobState::running;
+        if (!has_ended || !job->sound || job->row.sectors_failed == 0)
             return;
         std::vector<Checked<JobSectorRow>> sectors = sectors_of_job(connection, id);
         for (Checked<JobSectorRow>& sector : sectors) {

@@ -20,6 +20,8 @@ using Triangles = std::vector<glm::uvec3>;
 // Primitives may share accessors, so that a small file can ask for much; more than 3 GB of unshared ones is
 // no map.
 constexpr std::size_t max_mesh_elements = std::size_t{1} << 28;
+// Counted for each skin: what is posed is kept anew.
+constexpr std::size_t max_posed_elements = std::size_t{1} << 26;
 
 bool is_degenerate(const glm::uvec3& t) {
     return t.x == t.y || t.y == t.z || t.z == t.x;
@@ -199,6 +201,18 @@ tl::expected<std::uint32_t, std::string> MeshImporter::index_of(const tinygltf::
         if (!found)
             return tl::unexpected(found.error());
         pose = *found;
+    }
+    // A mesh of many skins is many meshes.
+    const tinygltf::Model& model = state_.document.model;
+    if (pose != nullptr) {
+        for (const tinygltf::Primitive& primitive : at_index(model.meshes, node.mesh).primitives)
+            posed_elements_ += elements_of(model, primitive);
+        if (posed_elements_ > max_posed_elements)
+            return tl::unexpected(state_.document.at(fmt::format(
+                "skin {}: with it the accessors of posed meshes have {} elements, over the limit of {}",
+                node.skin,
+                posed_elements_,
+                max_posed_elements)));
     }
     const auto imported = import_mesh(state_, static_cast<std::size_t>(node.mesh), pose, materials_);
     if (imported)

@@ -5,6 +5,7 @@
 #include "bakerd/map/material_import.h"
 #include "bakerd/map/skin.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -35,6 +36,7 @@ class MeshImporter {
     const MaterialIndices& materials_;
     Skins skins_;
     std::map<std::pair<int, int>, std::uint32_t> known_;  // by glTF mesh and skin
+    std::size_t posed_elements_ = 0;                      // of accessors
 };
 
 }  // namespace drtv::map

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <fnmatch.h>
+#include <locale.h>
 #include <nlohmann/json.hpp>
 
 namespace drtv::map {
@@ -44,8 +45,29 @@ tl::expected<tinygltf::Value::Object, std::string> properties_of(const OrderedJs
     return properties;
 }
 
+// While it lives, this thread's letters are those of UTF-8, whatever the environment says.
+class Utf8Letters {
+  public:
+    Utf8Letters() : locale_(::newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)) {
+        if (locale_ != nullptr)
+            before_ = ::uselocale(locale_);
+    }
+    ~Utf8Letters() {
+        if (locale_ == nullptr)
+            return;
+        ::uselocale(before_);
+        ::freelocale(locale_);
+    }
+    Utf8Letters(const Utf8Letters&) = delete;
+    Utf8Letters& operator=(const Utf8Letters&) = delete;
+
+  private:
+    locale_t locale_;
+    locale_t before_ = nullptr;
+};
+
 bool matches(const std::string& pattern, const std::string& name) {
-    return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+    return ::fnmatch(pattern.c_str(), name.c_str(), FNM_NOESCAPE) == 0;
 }
 
 }  // namespace
@@ -76,6 +98,7 @@ tl::expected<RolesFile, std::string> RolesFile::parse(std::string_view text) {
 }
 
 void RolesFile::apply(tinygltf::Model& model) {
+    const Utf8Letters letters;
     for (tinygltf::Node& node : model.nodes) {
         tinygltf::Value::Object properties;
         for (Rule& rule : rules_) {

@@ -12,7 +12,7 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 namespace drtv::service {
 namespace {
@@ -21,9 +21,11 @@ constexpr int max_message_bytes = 4 << 20;
 
 tl::expected<std::string, std::string> read_text(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file)
+    std::ostringstream text;
+    // Of a folder, too, nothing comes.
+    if (!file || !(text << file.rdbuf()))
         return tl::unexpected(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
-    return std::string(std::istreambuf_iterator<char>(file), {});
+    return text.str();
 }
 
 tl::expected<std::shared_ptr<grpc::ServerCredentials>, std::string> credentials(const TlsFiles& tls) {

@@ -12,7 +12,8 @@ namespace drtv::cli {
 
 struct Failure {
     ExitCode code = exit_usage;
-    std::string sentence;  // what, where, value
+    std::string sentence;   // what, where, value
+    bool may_pass = false;  // by itself: another attempt may succeed
 };
 
 template <class Value>

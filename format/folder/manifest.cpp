@@ -1,15 +1,12 @@
 #include "manifest.h"
 
 #include "sha256.h"
+#include "whole_file.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <system_error>
 
@@ -87,12 +84,11 @@ cli::Result<std::optional<FolderManifest>> read_manifest(const std::string& fold
     std::error_code code;
     if (!fs::exists(path, code))
         return std::nullopt;
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        return cli::fail(cli::exit_unreadable, "cannot read " + path + ": " + std::strerror(errno));
-    const std::string text(std::istreambuf_iterator<char>(file), {});
+    const auto text = read_whole(path);
+    if (!text)
+        return tl::unexpected(text.error());
     try {
-        const Json json = Json::parse(text);
+        const Json json = Json::parse(*text);
         if (json.at("version").get<int>() > schema_version)
             return cli::fail(cli::exit_invalid,
                              path + " was written by a newer bake than this program knows");
@@ -158,9 +154,9 @@ std::vector<std::string> check_listed_files(const std::string& folder, const Fol
         names.insert(sector_file_name(place.second, place.first));
     std::error_code code;
     std::vector<std::string> strangers;
-    for (const auto& entry : fs::directory_iterator(folder, code)) {
-        const std::string name = entry.path().filename().string();
-        if (entry.path().extension() == ".drtv" && !names.contains(name))
+    for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+        const std::string name = entry->path().filename().string();
+        if (entry->path().extension() == ".drtv" && !names.contains(name))
             strangers.push_back(manifest_path(folder) + ": " + name + " is not listed");
     }
     std::ranges::sort(strangers);

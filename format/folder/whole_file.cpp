@@ -3,10 +3,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <random>
 #include <system_error>
 
@@ -80,6 +83,23 @@ cli::Result<void> put_whole(const std::string& path, std::string_view bytes) {
     return {};
 }
 
+cli::Result<std::string> read_whole(const std::string& path) {
+    const auto fail = [&](const std::string& why) {
+        return cli::fail(cli::exit_unreadable, "cannot read " + path + ": " + why);
+    };
+    std::error_code code;
+    if (fs::is_directory(path, code))
+        return fail("it is a folder");
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return fail(std::strerror(errno));
+    std::string text;
+    std::array<char, 65536> buffer{};
+    while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0)
+        text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
+    return file.bad() ? cli::Result<std::string>(fail(std::strerror(errno))) : text;
+}
+
 cli::Result<void> make_folder(const std::string& folder) {
     std::error_code code;
     fs::create_directories(folder, code);
@@ -94,6 +114,19 @@ cli::Result<void> make_folder(const std::string& folder) {
         return cli::fail(cli::exit_unreadable,
                          "cannot write to the folder '" + folder + "': " + std::strerror(error));
     return {};
+}
+
+void remove_leftovers(const std::string& folder) {
+    constexpr std::chrono::minutes old{10};
+    std::error_code code;
+    const auto now = fs::file_time_type::clock::now();
+    for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+        const std::string name = entry->path().filename().string();
+        const bool is_part = name.starts_with("sector") && name.find(".part") != std::string::npos;
+        std::error_code ignored;
+        if (is_part && now - entry->last_write_time(ignored) > old)
+            fs::remove(entry->path(), ignored);
+    }
 }
 
 cli::Result<void> sync_folder(const std::string& folder) {

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "folder_info.h"
 #include "kit/files.h"
 #include "quality_parts.h"
 
@@ -7,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -152,6 +155,9 @@ void print_light(const Sector& sector) {
 }  // namespace
 
 cli::Result<cli::ExitCode> run_info(const std::string& file) {
+    std::error_code code;
+    if (std::filesystem::is_directory(file, code))
+        return print_folder_info(file);
     kit::FileBytes bytes;
     const auto loaded = kit::load_sector(file, &bytes);
     if (!loaded)

@@ -63,8 +63,8 @@ void add_checks(CLI::App& app, CommandLine& line) {
 }
 
 void add_views(CLI::App& app, CommandLine& line) {
-    CLI::App* info = app.add_subcommand("info", "What a sector file holds");
-    info->add_option("FILE", line.file, "A sector file")->required();
+    CLI::App* info = app.add_subcommand("info", "What a sector file, or a folder of them, holds");
+    info->add_option("FILE", line.file, "A sector file, or a folder of them")->required();
     info->callback([&line] { line.run = [&line] { return run_info(line.file); }; });
 
     CLI::App* dump = app.add_subcommand("dump", "Every number of a sector file as JSON");

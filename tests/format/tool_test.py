@@ -1,6 +1,7 @@
 """The drtv tool from outside: what it prints and how it exits. Usage: tool_test.py DRTV GOLDEN_FOLDER"""
 import json
 import os
+import shutil
 import stat
 import struct
 import subprocess
@@ -126,8 +127,7 @@ class Unreadable(Tool):
                 self.expect(UNREADABLE, *arguments, self.path("none.drtv"), err="none.drtv")
 
     def test_folder_in_place_of_a_file_exits_2(self):
-        for arguments in (["info"], ["dump", "--json"]):
-            self.expect(UNREADABLE, *arguments, self.folder, err="is a folder, not a file")
+        self.expect(UNREADABLE, "dump", "--json", self.folder, err="is a folder, not a file")
 
     def test_read_error_exits_2(self):
         # Opens, but cannot be read; a permission would not stop root.
@@ -650,6 +650,22 @@ class Show(Tool):
             "4112 bytes",
         ):
             self.assertIn(words, stdout)
+
+    def test_info_of_a_folder_sums_it_up(self):
+        folder = self.path("sectors")
+        os.mkdir(folder)
+        for name in (GOLDEN, GOLDEN_1_3):
+            shutil.copy(name, folder)
+        stdout = self.expect(0, "info", folder)
+        for words in (
+            "files           2, 0.0 MB, format 1.0 and 1.3\n",
+            "probes          ",
+            "light groups    lanterns",
+            "settings        rays",
+        ):
+            self.assertIn(words, stdout)
+        os.mkdir(self.path("empty"))
+        self.expect(UNREADABLE, "info", self.path("empty"), err="holds no .drtv file")
 
     def test_info_has_a_line_for_each_optional_section(self):
         lines = {

@@ -49,6 +49,15 @@ TEST(RolesFile, PatternsGiveNodesTheirRoles) {
     EXPECT_TRUE(map.warnings.empty());
 }
 
+TEST(RolesFile, LettersAreThoseOfAnyScript) {
+    for (const char* pattern : {"B?", "B[\u00e4\u00f6]", "?\u00e4"}) {
+        GltfBuilder b;
+        b.add_node({.mesh = b.add_mesh(ground(20)), .name = "B\u00e4"});
+        const Map map = expect_accepted(import_with(b, std::string("{\"") + pattern + "\": \"vegetation\"}"));
+        EXPECT_EQ(vegetation_of(map), 1u) << pattern;
+    }
+}
+
 TEST(RolesFile, LaterPatternsCountAndTheNodeItselfCountsMost) {
     GltfBuilder b = bare_scene();
     b.json["nodes"][1]["extras"] = {{"bake_role", "static"}, {"other", 7}};

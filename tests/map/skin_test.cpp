@@ -99,6 +99,28 @@ TEST(Skin, OneMeshInTwoPosesIsTwoMeshes) {
                     object.name == "statue" ? glm::vec3(0) : glm::vec3(4, 0, 0));
 }
 
+// Skins would get a small file around the limits on meshes.
+TEST(Skin, ManySkinsOfALargeMeshAreRefused) {
+    GltfBuilder b;
+    Shape wide;
+    for (int n = 0; n < 300'000; ++n)
+        wide.positions.emplace_back(static_cast<float>(n % 3), 0, static_cast<float>(n % 2));
+    const int mesh = b.add_mesh(wide);
+    Json& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] =
+        b.add_values(std::vector<std::uint8_t>(4 * wide.positions.size()), gltf_u8, "VEC4");
+    attributes["WEIGHTS_0"] =
+        b.add_values(std::vector<std::uint8_t>(4 * wide.positions.size()), gltf_u8, "VEC4", true);
+    const int joint = b.add_node({});
+    b.json["skins"] = Json::array();
+    for (int n = 0; n < 80; ++n) {
+        b.json["skins"].push_back({{"joints", {joint}}});
+        const int node = b.add_node({.mesh = mesh});
+        b.json["nodes"][static_cast<std::size_t>(node)]["skin"] = n;
+    }
+    expect_refused(import_files({{"map.glb", b.glb()}}, {"map.glb"}), {"posed meshes", "over the limit"});
+}
+
 TEST(Skin, BrokenSkinsAreToldByElement) {
     const auto refused = [](std::initializer_list<std::string> parts, const auto& edit) {
         Rig rig;

@@ -112,6 +112,8 @@ class LocalMaps : public ::testing::Test {
 TEST_F(LocalMaps, FolderGivesDocumentsOfEitherCase) {
     for (const char* name : {"WEST.GLB", "east.glb", "notes.txt", "sub/below.glb"})
         write(name);
+    for (const char* name : {".#lock.glb", "a.glb", "z.glb"})
+        fs::create_symlink("nowhere", folder_ / name);
     EXPECT_EQ(find({""}).documents(), (Names{"WEST.GLB", "east.glb"}));
     EXPECT_EQ(find({"east.glb", "sub/below.glb"}).documents(), (Names{"east.glb", "sub/below.glb"}));
 }
