@@ -52,11 +52,16 @@ bool find_files(const std::vector<std::string>& paths, std::vector<CheckedFile>&
     return complete;
 }
 
-// The worst of what the manifests of the files' folders tell.
-cli::ExitCode check_manifests(const std::vector<CheckedFile>& files, bool warnings_as_errors) {
+// The worst of what the manifests of the files' folders tell. A file that is named itself stands for itself
+// alone.
+cli::ExitCode check_manifests(const std::vector<CheckedFile>& files,
+                              const std::vector<std::string>& paths,
+                              bool warnings_as_errors) {
     constexpr std::size_t most_told = 10;
     std::set<std::string> folders;
     for (const CheckedFile& file : files) {
+        if (std::ranges::find(paths, file.path) != paths.end())
+            continue;
         const std::string folder = fs::path(file.path).parent_path().string();
         folders.insert(folder.empty() ? "." : folder);
     }
@@ -116,8 +121,9 @@ cli::Result<cli::ExitCode> run_validate(const ValidateRequest& request) {
         report.add(file, valid);
     }
     report.finish(folders);
-    return request.quick ? exit_code
-                         : std::max(exit_code, check_manifests(files, request.warnings_as_errors));
+    return request.quick
+               ? exit_code
+               : std::max(exit_code, check_manifests(files, request.paths, request.warnings_as_errors));
 }
 
 }  // namespace drtv::tool
