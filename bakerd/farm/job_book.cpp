@@ -129,7 +129,10 @@ std::vector<std::int64_t> JobBook::leave(std::uint64_t id, std::span<const std::
     Task& task = found->second;
     for (const std::int64_t job_id : recorded) {
         task.jobs.erase(job_id);
-        jobs_.at(job_id).tasks.erase(task.key.sector);
+        // One that was opened again waits for another task.
+        auto& tasks = jobs_.at(job_id).tasks;
+        if (const auto known = tasks.find(task.key.sector); known != tasks.end() && known->second == id)
+            tasks.erase(known);
     }
     const std::vector<std::int64_t> left(task.jobs.begin(), task.jobs.end());
     if (left.empty())

@@ -94,7 +94,7 @@ def bake(farm, daemon, options, rays):
     if done.returncode != 0:
         sys.exit(f"bake: {done.stderr.strip()}")
     probes = []
-    for name in sorted(os.listdir(folder)):
+    for name in sorted(name for name in os.listdir(folder) if name.endswith(".drtv")):
         probes += json.loads(farm.run("drtv", "dump", os.path.join(folder, name), "--json").stdout)["probes"]
     return [p for p in probes if p["kind"] == "manual"] if options.lattice else probes
 

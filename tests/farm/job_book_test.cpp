@@ -1,0 +1,81 @@
+// Jobs in memory: who waits, and what a job that is opened again gets.
+#include "bakerd/farm/job_book.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace drtv::farm {
+namespace {
+
+constexpr std::int64_t job_id = 5;
+const WantedSector meadow{{3, 4}, std::nullopt};
+
+JobRow running_job(std::int64_t id = job_id) {
+    JobRow job;
+    job.id = id;
+    job.request_id = "request " + std::to_string(id);
+    job.sectors_total = 1;
+    return job;
+}
+
+JobRow ended(JobRow job, JobState state) {
+    job.state = state;
+    job.ended_ms = 1;
+    return job;
+}
+
+Reply<worker::SectorResult> failure() {
+    return tl::unexpected(worker::RequestFailure{"it cannot be baked", false});
+}
+
+TEST(JobBook, JobWaitsUntilASectorOfItIsTakenUp) {
+    JobBook book;
+    book.add(running_job(1), {&meadow, 1}, {}, 12.5);
+    book.add(running_job(2), {&meadow, 1});
+    EXPECT_TRUE(book.view(1)->waiting);
+    EXPECT_EQ(book.view(1)->seconds_left, 12.5);
+    ASSERT_TRUE(book.next());
+    // Both wait for the same bake.
+    EXPECT_FALSE(book.view(1)->waiting);
+    EXPECT_FALSE(book.view(2)->waiting);
+    book.update(ended(running_job(1), JobState::cancelled));
+    EXPECT_FALSE(book.view(1)->waiting);
+    EXPECT_EQ(book.view(1)->seconds_left, 0);
+}
+
+// The recorder tells the book of the end first, and only then that the task has left: a retry in between must
+// not join the task that is about to be forgotten.
+TEST(JobBook, ReopenedJobGetsATaskOfItsOwn) {
+    JobBook book;
+    book.add(running_job(), {&meadow, 1});
+    const SectorTask task = book.next().value();
+    ASSERT_TRUE(book.finish(task.id, 3, failure()));
+    book.update(ended(running_job(), JobState::failed));
+    book.reopen(running_job(), {&meadow, 1});
+    EXPECT_TRUE(book.leave(task.id, std::array{job_id}).empty());
+    const auto again = book.next();
+    ASSERT_TRUE(again);
+    EXPECT_NE(again->id, task.id);
+    EXPECT_TRUE(book.is_running(job_id, meadow.sector));
+    // The later task is found by others, although the one before had its key.
+    book.add(running_job(6), {&meadow, 1});
+    EXPECT_FALSE(book.next());
+    const auto finished = book.finish(again->id, 3, failure());
+    ASSERT_TRUE(finished);
+    EXPECT_EQ(finished->jobs.size(), 2u);
+}
+
+TEST(JobBook, ForgottenRequestIsNoAnswerAnyMore) {
+    JobBook book;
+    book.add(running_job(), {&meadow, 1});
+    EXPECT_EQ(book.begin_request("request 5"), job_id);
+    JobRow cancelled = ended(running_job(), JobState::cancelled);
+    cancelled.request_id.clear();
+    book.update(cancelled);
+    EXPECT_FALSE(book.begin_request("request 5"));
+    book.end_request("request 5");
+}
+
+}  // namespace
+}  // namespace drtv::farm
