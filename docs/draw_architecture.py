@@ -7,7 +7,7 @@ import sys
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 PICTURE = os.path.join(FOLDER, "architecture.svg")
-WIDTH, HEIGHT = 1180, 760
+WIDTH, HEIGHT = 1180, 840
 BOX = 150, 46
 
 # Groups of rooms: name, colour, rectangle.
@@ -15,13 +15,14 @@ GROUPS = [
     ("artist's machine: bake", "#e8f0fb", (20, 40, 190, 400)),
     ("daemon: bakerd serve", "#eef7ea", (240, 40, 380, 400)),
     ("worker process: bakerd worker", "#fdf3e3", (650, 40, 510, 400)),
-    ("a game, and drtv", "#f4ecf8", (20, 480, 760, 250)),
-    ("bakerd render", "#eeeeee", (810, 480, 350, 250)),
+    ("a game, and drtv", "#f4ecf8", (20, 480, 760, 330)),
+    ("bakerd render", "#eeeeee", (810, 480, 350, 330)),
 ]
 
 # Room or thing -> middle of its box, and a second line. Things are not rooms: they are drawn with round ends.
 ROOMS = {
     "client": (115, 210, "bake"),
+    "map_files": (115, 152, "which files"),
     "settings": (115, 300, "one table"),
     "settings/message": (115, 375, "as messages"),
     "proto": (330, 110, "the contract"),
@@ -38,12 +39,14 @@ ROOMS = {
     "format/runtime": (300, 570, "relight, volumes"),
     "format/light": (490, 570, "a day as JSON"),
     "format/cli": (490, 660, "exit codes, messages"),
+    "format/spelling": (490, 750, "did you mean"),
+    "format/folder": (680, 750, "manifest, whole files"),
     "format/kit": (680, 570, "folders, PNG"),
     "format/tool": (680, 660, "drtv"),
     "bakerd/picture": (985, 570, "relit and path-traced"),
 }
 THINGS = {
-    "map.glb": (115, 110, "and its pictures"),
+    "map.glb": (115, 92, "and its pictures"),
     "database": (540, 385, "SQLite"),
     "sector files": (335, 385, "16-bit, versioned"),
     "pixels of a game": (300, 660, "three textures"),
@@ -52,7 +55,8 @@ THINGS = {
 
 # From, to, label.
 FLOWS = [
-    ("map.glb", "client", ""),
+    ("map.glb", "map_files", ""),
+    ("map_files", "client", ""),
     ("client", "bakerd/service", "files, a job"),
     ("bakerd/service", "bakerd/farm", "request"),
     ("bakerd/farm", "bakerd/worker", "sectors"),
@@ -71,6 +75,7 @@ FLOWS = [
     ("format/runtime", "pixels of a game", ""),
     ("format/light", "format/runtime", ""),
     ("format/kit", "format/tool", ""),
+    ("format/folder", "format/tool", ""),
     ("format/kit", "bakerd/picture", "relit sectors"),
     ("bakerd/picture", "picture.png", ""),
 ]

@@ -32,10 +32,10 @@ build() {
 libraries="drtv_format drtv_runtime"
 
 build whole g++-12 -- all
-[ "$(packages_of whole)" = "CLI11 nlohmann_json tl-expected zstd " ] || fail "format/ looks for packages: $(packages_of whole)"
+[ "$(packages_of whole)" = "CLI11 OPENSSL_INCLUDE nlohmann_json tl-expected zstd " ] || fail "format/ looks for packages: $(packages_of whole)"
 for library in $(libraries_of "$work/whole/bin/drtv"); do
     case $library in
-        libzstd.so.* | libstdc++.so.* | libm.so.* | libgcc_s.so.* | libc.so.* | ld-linux*) ;;
+        libcrypto.so.* | libzstd.so.* | libstdc++.so.* | libm.so.* | libgcc_s.so.* | libc.so.* | ld-linux*) ;;
         *) fail "drtv is linked to $library" ;;
     esac
 done
