@@ -79,11 +79,12 @@ tl::expected<RolesFile, std::string> RolesFile::parse(std::string_view text) {
     if (!json->is_object())
         return tl::unexpected(std::string("it is not an object of name patterns"));
     RolesFile file;
-    for (const auto& [pattern, what] : json->items()) {
+    for (const auto& item : json->items()) {
+        const std::string& pattern = item.key();
         const auto fail = [&](const std::string& why) {
             return tl::unexpected(fmt::format("'{}': {}", pattern, why));
         };
-        auto properties = properties_of(what);
+        auto properties = properties_of(item.value());
         if (!properties)
             return fail(properties.error());
         // What would be wrong with a node that it matches is wrong with the file.
