@@ -4,6 +4,10 @@
 #include "client/job_end.h"
 #include "format/folder/whole_file.h"
 
+#include <grpcpp/grpcpp.h>
+
+#include <utility>
+
 namespace drtv::client {
 
 cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
@@ -16,7 +20,13 @@ cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
     const auto found = get_job(connection, job);
     if (!found)
         return tl::unexpected(found.error());
-    auto pull = FolderPull::open(connection, job, folder, replace);
+    v1::GetMapRequest request;
+    request.set_name(found->map());
+    v1::Map map;
+    if (const grpc::Status status = call(*connection.maps, &v1::Maps::Stub::GetMap, request, map);
+        !status.ok())
+        return tl::unexpected(connection.failure(status));
+    auto pull = FolderPull::open(connection, *found, std::move(map), folder, replace);
     if (!pull)
         return tl::unexpected(pull.error());
     if (auto pulled = pull->finish(); !pulled)

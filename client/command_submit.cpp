@@ -45,9 +45,11 @@ void print_submitted(const ServerConnection& connection, const v1::Job& job) {
 
 // Files come while the rest is still being baked.
 cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
-                                          const std::string& number,
+                                          const v1::Job& created,
+                                          const v1::Map& map,
                                           const SubmitOptions& options) {
-    auto pull = FolderPull::open(connection, number, options.pull_folder, options.replace);
+    const std::string number = job_number(created);
+    auto pull = FolderPull::open(connection, created, map, options.pull_folder, options.replace);
     if (!pull)
         return cli::fail(pull.error().code,
                          fmt::format("{}; job {} goes on, pull it with: bake pull {} --out {}",
@@ -112,7 +114,7 @@ cli::Result<cli::ExitCode> run_submit(ServerConnection& connection, const Submit
                         number));
     }
     if (!options.pull_folder.empty())
-        return watch_and_pull(connection, number, options);
+        return watch_and_pull(connection, created, prepared->map, options);
     if (options.wait)
         return run_watch(connection, number, {.timeout_s = options.timeout_s});
     print_submitted(connection, created);

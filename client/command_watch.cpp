@@ -5,6 +5,7 @@
 #include "client/job_text.h"
 #include "client/number_text.h"
 #include "client/progress.h"
+#include "client/reconnection.h"
 #include "format/cli/report.h"
 
 #include <fmt/format.h>
@@ -13,13 +14,9 @@
 #include <chrono>
 #include <cstdio>
 #include <optional>
-#include <thread>
 
 namespace drtv::client {
 namespace {
-
-// How long a daemon may be away (restarting) before a watch gives up.
-constexpr std::chrono::seconds reconnect_patience{60};
 
 // Nothing: without a limit.
 using Deadline = std::optional<std::chrono::system_clock::time_point>;
@@ -97,8 +94,7 @@ cli::Result<v1::Job> watch_job(ServerConnection& connection,
     const Deadline deadline = deadline_in(options.timeout_s);
     Progress progress;
     v1::Job job;
-    auto last_contact = std::chrono::steady_clock::now();
-    bool told = false;
+    Reconnection reconnection(connection.options.server);
     for (;;) {
         bool heard = false;
         const grpc::Status status = follow(connection, name, progress, options, deadline, job, heard);
@@ -119,16 +115,8 @@ cli::Result<v1::Job> watch_job(ServerConnection& connection,
         }
         if (status.error_code() != grpc::StatusCode::UNAVAILABLE)
             return tl::unexpected(connection.failure(status));
-        if (heard)
-            last_contact = std::chrono::steady_clock::now();
-        if (job.name().empty() || std::chrono::steady_clock::now() - last_contact > reconnect_patience)
+        if (job.name().empty() || !reconnection.try_again(heard))
             return tl::unexpected(connection.failure(status));
-        if (!told)
-            cli::note(fmt::format("lost bakerd at {}; trying again for {} s",
-                                  connection.options.server,
-                                  reconnect_patience.count()));
-        told = true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));
     }
     return job;
 }

@@ -2,61 +2,35 @@
 
 #include "client/folder_lock.h"
 #include "client/folder_manifest.h"
-#include "client/interrupt.h"
-#include "client/job_end.h"
 #include "client/job_text.h"
 #include "client/number_text.h"
+#include "client/reconnection.h"
 #include "client/sector_stream.h"
 #include "format/cli/report.h"
-#include "format/folder/sha256.h"
 #include "format/folder/whole_file.h"
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 #include <nlohmann/json.hpp>
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
-#include <thread>
 
 namespace drtv::client {
 namespace {
 
 namespace fs = std::filesystem;
 
-// How long a daemon may be away (restarting) before a pull gives up.
-constexpr std::chrono::seconds patience{60};
-
-std::string path_of(const std::string& folder, const folder::SectorPlace& place) {
-    return folder + "/" + folder::sector_file_name(place.second, place.first);
-}
-
-bool is_file(const std::string& path, const std::string& sha256, std::int64_t size_bytes) {
-    std::error_code code;
-    const std::uintmax_t found = fs::file_size(path, code);
-    if (code || std::cmp_not_equal(found, size_bytes))
-        return false;
-    return folder::sha256_of_file(path).value_or("") == sha256;
+folder::SectorPlace place_of(const v1::Sector& sector) {
+    return {sector.coordinate().j(), sector.coordinate().i()};
 }
 
 }  // namespace
 
-cli::Result<FolderPull> FolderPull::open(ServerConnection& connection,
-                                         const std::string& job,
-                                         std::string folder,
-                                         bool replace) {
-    auto found = get_job(connection, job);
-    if (!found)
-        return tl::unexpected(found.error());
-    v1::GetMapRequest request;
-    request.set_name(found->map());
-    v1::Map map;
-    if (const grpc::Status status = call(*connection.maps, &v1::Maps::Stub::GetMap, request, map);
-        !status.ok())
-        return tl::unexpected(connection.failure(status));
-    FolderPull pull(connection, std::move(*found), std::move(map), std::move(folder), replace);
+cli::Result<FolderPull> FolderPull::open(
+    ServerConnection& connection, v1::Job job, v1::Map map, std::string folder, bool replace) {
+    FolderPull pull(connection, std::move(job), std::move(map), std::move(folder), replace);
     if (auto read = pull.read_earlier(); !read)
         return tl::unexpected(read.error());
     pull.manifest_ = manifest_of(pull.map_, pull.job_, connection.server);
@@ -72,23 +46,12 @@ cli::Result<void> FolderPull::read_earlier() {
 }
 
 cli::Result<void> FolderPull::pull() {
-    auto last_progress = std::chrono::steady_clock::now();
-    bool told = false;
+    Reconnection reconnection(connection_.options.server);
     for (;;) {
         const std::size_t pulled_before = pulled_.size();
         auto done = pull_once();
-        if (done || !done.error().may_pass)
+        if (done || !done.error().may_pass || !reconnection.try_again(pulled_.size() > pulled_before))
             return done;
-        const auto now = std::chrono::steady_clock::now();
-        if (pulled_.size() > pulled_before)
-            last_progress = now;
-        if (now - last_progress > patience)
-            return done;
-        if (!told)
-            cli::note(fmt::format(
-                "lost bakerd at {}; trying again for {} s", connection_.options.server, patience.count()));
-        told = true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));
     }
 }
 
@@ -101,9 +64,8 @@ cli::Result<void> FolderPull::pull_once() {
     if (auto begun = write_begun(wanted->sectors_size()); !begun)
         return begun;
     return stream_sectors(connection_, *wanted, folder_, [this](const v1::Sector& sector) {
-        const folder::SectorPlace place(sector.coordinate().j(), sector.coordinate().i());
-        here_.insert(place);
-        pulled_.insert(place);
+        here_.insert(place_of(sector));
+        pulled_.insert(place_of(sector));
     });
 }
 
@@ -164,19 +126,20 @@ void FolderPull::note_sector(const v1::Sector& sector, v1::PullSectorsRequest& w
         ++manifest_.unfinished;
         return;
     }
-    const folder::SectorPlace place(sector.coordinate().j(), sector.coordinate().i());
-    manifest_.files[place] = {sector.sha256(), sector.size_bytes(), manifest_.map};
+    const folder::SectorPlace place = place_of(sector);
+    const folder::ListedFile listed{sector.sha256(), sector.size_bytes(), manifest_.map};
+    manifest_.files[place] = listed;
     if (here_.contains(place))
         return;
-    if (has_file_of(sector))
+    if (has_file(place, listed))
         here_.insert(place);
     else
         *wanted.add_sectors() = sector.coordinate();
 }
 
-bool FolderPull::has_file_of(const v1::Sector& sector) const {
-    const std::string name = folder::sector_file_name(sector.coordinate().i(), sector.coordinate().j());
-    return names_there_.contains(name) && is_file(folder_ + "/" + name, sector.sha256(), sector.size_bytes());
+bool FolderPull::has_file(const folder::SectorPlace& place, const folder::ListedFile& listed) const {
+    return names_there_.contains(folder::sector_file_name(place.second, place.first)) &&
+           folder::difference_from_list(folder::sector_file_path(folder_, place), listed).empty();
 }
 
 // A job of a region says nothing of the sectors around it: their files stay, and the manifest says of which
@@ -190,13 +153,12 @@ void FolderPull::leave_or_remove_earlier_files() {
     for (const auto& [place, file] : earlier_->files) {
         if (manifest_.files.contains(place))
             continue;
-        const std::string path = path_of(folder_, place);
-        if (!is_file(path, file.sha256, file.size_bytes)) {
-            std::error_code code;
+        const std::string path = folder::sector_file_path(folder_, place);
+        std::error_code code;
+        if (!folder::difference_from_list(path, file).empty()) {
             changed += fs::exists(path, code) ? 1 : 0;
             continue;
         }
-        std::error_code code;
         if (stays)
             manifest_.files[place] = file;
         else

@@ -18,11 +18,9 @@ namespace drtv::client {
 // that is there already and right is left alone. REQUIRES: the folder is there; the connection outlives it.
 class FolderPull {
   public:
-    // Asks the server for job and map. Fails for a folder of another map (earlier_manifest).
-    [[nodiscard]] static cli::Result<FolderPull> open(ServerConnection& connection,
-                                                      const std::string& job,
-                                                      std::string folder,
-                                                      bool replace);
+    // `map` is the job's. Fails for a folder of another map (earlier_manifest).
+    [[nodiscard]] static cli::Result<FolderPull> open(
+        ServerConnection& connection, v1::Job job, v1::Map map, std::string folder, bool replace);
 
     // The files of sectors that have been finished since.
     [[nodiscard]] cli::Result<void> pull();
@@ -47,7 +45,7 @@ class FolderPull {
     // Those that are done, of which the folder has no right file.
     [[nodiscard]] cli::Result<v1::PullSectorsRequest> missing_files();
     void note_sector(const v1::Sector& sector, v1::PullSectorsRequest& wanted);
-    [[nodiscard]] bool has_file_of(const v1::Sector& sector) const;
+    [[nodiscard]] bool has_file(const folder::SectorPlace& place, const folder::ListedFile& listed) const;
     // Until the end the folder's manifest says that it is not whole, and what was there.
     [[nodiscard]] cli::Result<void> write_begun(std::int64_t wanted);
     void leave_or_remove_earlier_files();

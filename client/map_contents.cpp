@@ -7,32 +7,41 @@
 #include "map_files/reference.h"
 
 #include <filesystem>
-#include <set>
+#include <map>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace drtv::client {
 namespace {
 
+using DiskPaths = std::map<std::string, std::filesystem::path>;  // by map path
+
+bool insert_if_there(const map_files::LocalMap& map, const std::string& path, DiskPaths& paths) {
+    if (paths.contains(path))
+        return true;
+    auto place = map.on_disk(path);
+    if (place)
+        paths.emplace(path, std::move(*place));
+    return place.has_value();
+}
+
 // The document, the files that it names, and those that name roles for it.
-void insert_files(const map_files::LocalMap& map, const std::string& document, std::set<std::string>& paths) {
-    paths.insert(document);
-    if (const std::string roles = map_files::roles_path(document); map.on_disk(roles))
-        paths.insert(roles);
-    for (const std::string& uri : outside_uris(map.on_disk(document).value_or(""))) {
+void insert_files(const map_files::LocalMap& map, const std::string& document, DiskPaths& paths) {
+    // One that was found and has gone since is told when it is read.
+    if (!insert_if_there(map, document, paths))
+        paths.emplace(document, document);
+    insert_if_there(map, map_files::roles_path(document), paths);
+    for (const std::string& uri : outside_uris(paths.at(document))) {
         const auto files = map_files::files_named(document, uri);
-        if (!files)
-            continue;
-        for (const std::string& path : *files) {
-            if (!map.on_disk(path))
-                continue;
-            paths.insert(path);
-            break;
+        for (const std::string& path : files.value_or(std::vector<std::string>())) {
+            if (insert_if_there(map, path, paths))
+                break;
         }
     }
 }
 
-cli::Result<MapContentFile> content_file(const map_files::LocalMap& map, const std::string& path) {
-    const std::filesystem::path place = map.on_disk(path).value_or(path);
+cli::Result<MapContentFile> content_file(const std::string& path, const std::filesystem::path& place) {
     std::error_code code;
     const auto size_bytes = static_cast<std::int64_t>(std::filesystem::file_size(place, code));
     if (auto checked = map_files::check_size(place.string(), code ? 0 : size_bytes); !checked)
@@ -55,15 +64,15 @@ cli::Result<MapContents> collect_map(const std::vector<std::string>& arguments) 
     if (!local)
         return cli::fail(cli::exit_unreadable, local.error());
     MapContents contents{{}, local->documents(), local->repeated()};
-    std::set<std::string> paths;
+    DiskPaths paths;
     for (const std::string& document : local->documents())
         insert_files(*local, document, paths);
     const auto document_count = static_cast<std::int64_t>(local->documents().size());
     if (auto checked = map_files::check_counts(document_count, static_cast<std::int64_t>(paths.size()));
         !checked)
         return cli::fail(cli::exit_invalid, checked.error());
-    for (const std::string& path : paths) {
-        auto file = content_file(*local, path);
+    for (const auto& [path, place] : paths) {
+        auto file = content_file(path, place);
         if (!file)
             return tl::unexpected(file.error());
         contents.files.push_back(std::move(*file));

@@ -79,21 +79,25 @@ class Writers {
             lock.unlock();
             cli::Result<void> done;
             std::size_t written = 0;
-            while (done && written < files.size())
-                done = write(files[written++]);
+            for (; written < files.size(); ++written) {
+                done = write(files[written]);
+                if (!done)
+                    break;
+            }
             lock.lock();
-            if (!done && result_)
-                result_ = done;
-            if (!done)
-                changed_.notify_all();
-            for (std::size_t n = 0; n < written - (done ? 0 : 1); ++n)
+            for (std::size_t n = 0; n < written; ++n)
                 tell(files[n].sector);
+            if (done)
+                continue;
+            if (result_)
+                result_ = done;
+            changed_.notify_all();
         }
     }
 
     [[nodiscard]] cli::Result<void> write(const ArrivedFile& file) const {
         const v1::SectorCoordinate& place = file.sector.coordinate();
-        const std::string path = folder_ + "/" + folder::sector_file_name(place.i(), place.j());
+        const std::string path = folder::sector_file_path(folder_, {place.j(), place.i()});
         if (folder::sha256_of_text(file.bytes) != file.sector.sha256())
             return cli::fail(cli::exit_unreadable,
                              fmt::format("{} arrived damaged; nothing was written", path));

@@ -2,10 +2,10 @@
 
 #include "bakerd/farm/row_sum.h"
 #include "bakerd/farm/schema.h"
+#include "bakerd/map/warning.h"
 
 #include <fmt/format.h>
 #include <sqlite3.h>
-#include <algorithm>
 
 namespace drtv::farm {
 namespace {
@@ -14,12 +14,12 @@ bool is_damage(int sqlite_code) {
     return sqlite_code == SQLITE_CORRUPT || sqlite_code == SQLITE_NOTADB;
 }
 
-tl::unexpected<store::Error> damaged(const std::string& path, std::string how) {
-    std::ranges::replace(how, '\n', ' ');
+tl::unexpected<store::Error> damaged(const std::string& path, const std::string& how) {
     return store::fail(
         store::ErrorCode::data_loss,
-        fmt::format(
-            "the database {} is damaged ({}): move it away, and start again without its jobs", path, how));
+        fmt::format("the database {} is damaged ({}): move it away, and start again without its jobs",
+                    path,
+                    map::as_sentence(how)));
 }
 
 }  // namespace

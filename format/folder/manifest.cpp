@@ -54,25 +54,14 @@ FolderManifest read_json(const Json& json) {
     return manifest;
 }
 
-// Empty where the file is as it is listed.
-std::string check_file(const std::string& path, const ListedFile& listed) {
-    std::error_code code;
-    const std::uintmax_t size_bytes = fs::file_size(path, code);
-    if (code)
-        return "is listed, and cannot be read: " + code.message();
-    if (std::cmp_not_equal(size_bytes, listed.size_bytes))
-        return "has " + std::to_string(size_bytes) + " bytes, and is listed with " +
-               std::to_string(listed.size_bytes);
-    const auto digest = sha256_of_file(path);
-    if (!digest)
-        return "is listed, and cannot be read";
-    return *digest == listed.sha256 ? "" : "is not the file that is listed: its bytes differ";
-}
-
 }  // namespace
 
 std::string sector_file_name(std::int32_t i, std::int32_t j) {
     return "sector_" + std::to_string(i) + "_" + std::to_string(j) + ".drtv";
+}
+
+std::string sector_file_path(const std::string& folder, const SectorPlace& place) {
+    return folder + "/" + sector_file_name(place.second, place.first);
 }
 
 std::string manifest_path(const std::string& folder) {
@@ -142,16 +131,30 @@ std::string manifest_text(const FolderManifest& manifest) {
     return text;
 }
 
+std::string difference_from_list(const std::string& path, const ListedFile& listed) {
+    std::error_code code;
+    const std::uintmax_t size_bytes = fs::file_size(path, code);
+    if (code)
+        return "is listed, and cannot be read: " + code.message();
+    if (std::cmp_not_equal(size_bytes, listed.size_bytes))
+        return "has " + std::to_string(size_bytes) + " bytes, and is listed with " +
+               std::to_string(listed.size_bytes);
+    const auto digest = sha256_of_file(path);
+    if (!digest)
+        return "is listed, and cannot be read";
+    return *digest == listed.sha256 ? "" : "is not the file that is listed: its bytes differ";
+}
+
 std::vector<std::string> check_listed_files(const std::string& folder, const FolderManifest& manifest) {
     std::vector<std::string> sentences;
+    std::set<std::string> names;
     for (const auto& [place, listed] : manifest.files) {
         const std::string name = sector_file_name(place.second, place.first);
-        if (const std::string wrong = check_file(folder + "/" + name, listed); !wrong.empty())
-            sentences.push_back(manifest_path(folder) + ": " + name + " " + wrong);
+        const std::string difference = difference_from_list(sector_file_path(folder, place), listed);
+        if (!difference.empty())
+            sentences.push_back(manifest_path(folder) + ": " + name + " " + difference);
+        names.insert(name);
     }
-    std::set<std::string> names;
-    for (const auto& [place, listed] : manifest.files)
-        names.insert(sector_file_name(place.second, place.first));
     std::error_code code;
     std::vector<std::string> strangers;
     for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {

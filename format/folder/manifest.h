@@ -42,6 +42,8 @@ struct FolderManifest {
 // "sector_3_-2.drtv"
 [[nodiscard]] std::string sector_file_name(std::int32_t i, std::int32_t j);
 
+[[nodiscard]] std::string sector_file_path(const std::string& folder, const SectorPlace& place);
+
 [[nodiscard]] std::string manifest_path(const std::string& folder);
 
 // Nothing where the folder has none. Fails for one that cannot be read, or is none.
@@ -51,6 +53,9 @@ struct FolderManifest {
 [[nodiscard]] bool are_of_one_map(const FolderManifest& one, const FolderManifest& other);
 
 [[nodiscard]] std::string manifest_text(const FolderManifest& manifest);
+
+// Empty where the file is as it is listed; else the end of a sentence that begins with it.
+[[nodiscard]] std::string difference_from_list(const std::string& path, const ListedFile& listed);
 
 // What of the listed files is not as the manifest says: one sentence each, and of files beside them that it
 // does not list.

@@ -38,15 +38,13 @@ std::optional<std::size_t> read_head(const std::string& path, std::span<std::uin
 }
 
 // "cannot read a.drtv: No such file or directory", as `errno` tells it.
-tl::unexpected<cli::Failure> cannot(const std::string& verb, const std::string& path) {
-    return cli::fail(cli::exit_unreadable, "cannot " + verb + " " + path + ": " + std::strerror(errno));
+tl::unexpected<cli::Failure> cannot_read(const std::string& path) {
+    return cli::fail(cli::exit_unreadable, "cannot read " + path + ": " + std::strerror(errno));
 }
 
 tl::unexpected<cli::Failure> cannot_write(const std::string& path, const std::string& why) {
     return cli::fail(cli::exit_unreadable, "cannot write " + path + ": " + why);
 }
-
-// False where not all could be written; `errno` tells why.
 
 }  // namespace
 
@@ -56,7 +54,7 @@ cli::Result<FileBytes> read_file(const std::string& path) {
         return cli::fail(cli::exit_unreadable, path + " is a folder, not a file");
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr)
-        return cannot("read", path);
+        return cannot_read(path);
     FileBytes bytes;
     std::uint8_t buffer[65536];
     for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) {
@@ -68,7 +66,7 @@ cli::Result<FileBytes> read_file(const std::string& path) {
     const bool failed = std::ferror(file) != 0;
     std::fclose(file);
     if (failed)
-        return cannot("read", path);
+        return cannot_read(path);
     return bytes;
 }
 
@@ -81,7 +79,7 @@ cli::Result<std::string> read_rest(std::FILE* file, const std::string& name) {
     for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
         text.append(buffer, n);
     if (std::ferror(file) != 0)
-        return cannot("read", name);
+        return cannot_read(name);
     return text;
 }
 
@@ -90,7 +88,7 @@ cli::Result<std::string> read_rest(std::FILE* file, const std::string& name) {
 cli::Result<std::string> read_text(const std::string& path) {
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr)
-        return cannot("read", path);
+        return cannot_read(path);
     auto read = read_rest(file, path);
     std::fclose(file);
     return read;

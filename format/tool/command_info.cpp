@@ -1,5 +1,6 @@
 #include "commands.h"
 #include "folder_info.h"
+#include "info_text.h"
 #include "kit/files.h"
 #include "quality_parts.h"
 
@@ -178,27 +179,14 @@ cli::Result<cli::ExitCode> run_info(const std::string& file) {
     std::printf("file            %zu bytes, format %s\n", bytes.size(), kit::format_version(bytes).c_str());
     print_probes(sector);
     const BakeRecord& bake = sector.bake;
-    std::printf("settings        rays %u, bounces %u, reach %g m, min_distance %g m\n",
-                bake.rays,
-                bake.bounces,
-                static_cast<double>(bake.reach_m),
-                static_cast<double>(bake.min_distance_m));
+    std::printf("settings        %s\n", settings_text(bake).c_str());
     std::printf("settings key    ");
     for (std::uint8_t byte : bake.settings_key)
         std::printf("%02x", byte);
     const Statistics& s = sector.statistics;
-    std::printf(
-        "\nplacement       %u candidates, %u moved out of solids, %u dropped in solids, %u removed by "
-        "volumes, %u thinned\n",
-        s.candidates,
-        s.moved_out,
-        s.dropped_in_solid,
-        s.removed_by_volume,
-        s.thinned);
+    std::printf("\nplacement       %s\n", placement_text(s).c_str());
     std::printf("spacing used    %g m\n", static_cast<double>(s.used_distance_m));
-    std::printf("rays            %llu, of which %llu met the back of a one-sided surface\n",
-                static_cast<unsigned long long>(s.rays),
-                static_cast<unsigned long long>(s.back_hits));
+    std::printf("rays            %s\n", rays_text(s).c_str());
     print_light(sector);
     print_sections(entries);
     return cli::exit_done;

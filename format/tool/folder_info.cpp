@@ -1,6 +1,7 @@
 #include "folder_info.h"
 
 #include "folder/manifest.h"
+#include "info_text.h"
 #include "kit/files.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ struct Sums {
         for (const Probe& probe : sector.probes)
             ++probes_of_kind[static_cast<std::size_t>(probe.kind)];
         empty += sector.probes.empty() ? 1u : 0u;
-        settings.insert(text_of(sector.bake));
+        settings.insert(settings_text(sector.bake));
         statistics.candidates += sector.statistics.candidates;
         statistics.moved_out += sector.statistics.moved_out;
         statistics.dropped_in_solid += sector.statistics.dropped_in_solid;
@@ -53,18 +54,6 @@ struct Sums {
             light_groups.insert(group.name);
         interiors += sector.interiors.size();
         with_local_transfer += sector.local_transfer ? 1u : 0u;
-    }
-
-    static std::string text_of(const BakeRecord& bake) {
-        std::array<char, 160> text{};
-        std::snprintf(text.data(),
-                      text.size(),
-                      "rays %u, bounces %u, reach %g m, min_distance %g m",
-                      bake.rays,
-                      bake.bounces,
-                      static_cast<double>(bake.reach_m),
-                      static_cast<double>(bake.min_distance_m));
-        return text.data();
     }
 };
 
@@ -97,18 +86,8 @@ void print(const Sums& sums) {
                 kinds[2],
                 sums.empty);
     std::printf("settings        %s\n", joined(sums.settings, "\n                ").c_str());
-    const Statistics& s = sums.statistics;
-    std::printf(
-        "placement       %u candidates, %u moved out of solids, %u dropped in solids, %u removed by volumes, "
-        "%u thinned\n",
-        s.candidates,
-        s.moved_out,
-        s.dropped_in_solid,
-        s.removed_by_volume,
-        s.thinned);
-    std::printf("rays            %llu, of which %llu met the back of a one-sided surface\n",
-                static_cast<unsigned long long>(s.rays),
-                static_cast<unsigned long long>(s.back_hits));
+    std::printf("placement       %s\n", placement_text(sums.statistics).c_str());
+    std::printf("rays            %s\n", rays_text(sums.statistics).c_str());
     if (!sums.light_groups.empty())
         std::printf("light groups    %s\n", joined(sums.light_groups, ", ").c_str());
     if (sums.interiors > 0)

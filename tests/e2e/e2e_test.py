@@ -322,11 +322,7 @@ class Import(FarmTest):
             status=INVALID,
         )
         path = write_map(self.farm.path("map.gltf"), lawn=LAWN, hall=WALL)
-        with open(path, encoding="utf-8") as file:
-            document = json.load(file)
-        document["nodes"][1]["extras"] = {"bake_role": "interior"}
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump(document, file)
+        change(path, lambda document: document["nodes"][1].update(extras={"bake_role": "interior"}))
         self.assert_sentence(
             self.farm.bake(daemon, "submit", path),
             "map.gltf: node 1 ('hall'): its mesh, of the bake_role 'interior', is open",

@@ -72,12 +72,12 @@ def with_lamps(path, groups):
 
 
 def change(path, edit):
-    """Applies an edit of a glTF document that has its buffer inside; the edit gets the document and gives bytes to append."""
+    """Applies an edit of a glTF document that has its buffer inside; the edit gets the document, and may give bytes to append."""
     with open(path, encoding="utf-8") as file:
         document = json.load(file)
     buffer = document["buffers"][0]
     prefix, data = buffer["uri"].split(",")
-    data = base64.b64decode(data) + edit(document)
+    data = base64.b64decode(data) + (edit(document) or b"")
     buffer.update(byteLength=len(data), uri=prefix + "," + base64.b64encode(data).decode())
     with open(path, "w", encoding="utf-8") as file:
         json.dump(document, file)
