@@ -56,6 +56,7 @@ grpc::Status follow(ServerConnection& connection,
                     Progress& progress,
                     const WatchOptions& options,
                     const Deadline& deadline,
+                    const std::string& left,
                     v1::Job& last,
                     bool& heard) {
     v1::WatchJobRequest request;
@@ -63,7 +64,7 @@ grpc::Status follow(ServerConnection& connection,
     grpc::ClientContext context;
     if (deadline)
         context.set_deadline(*deadline);
-    const InterruptGuard guard(context);
+    const InterruptGuard guard(context, left);
     const auto reader = connection.jobs->WatchJob(&context, request);
     v1::Job job;
     while (reader->Read(&job)) {
@@ -91,18 +92,17 @@ cli::Result<v1::Job> watch_job(ServerConnection& connection,
     const std::string name = job_resource(argument);
     const std::string number = name.substr(name.find('/') + 1);
     const std::string come_back = "come back with: bake watch " + number;
+    const std::string left = fmt::format("job {} goes on without this client; {}", number, come_back);
     const Deadline deadline = deadline_in(options.timeout_s);
     Progress progress;
     v1::Job job;
     Reconnection reconnection(connection.options.server);
     for (;;) {
         bool heard = false;
-        const grpc::Status status = follow(connection, name, progress, options, deadline, job, heard);
+        const grpc::Status status = follow(connection, name, progress, options, deadline, left, job, heard);
         progress.clear();
-        if (interrupted()) {
-            return cli::fail(cli::exit_interrupted,
-                             fmt::format("job {} goes on without this client; {}", number, come_back));
-        }
+        if (interrupted())
+            return cli::fail(cli::exit_interrupted, left);
         if (has_ended(job))
             break;
         if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED ||

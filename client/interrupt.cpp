@@ -1,15 +1,20 @@
 #include "client/interrupt.h"
 
+#include "format/cli/report.h"
+
 #include <fcntl.h>
 #include <grpcpp/grpcpp.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <map>
 #include <mutex>
-#include <set>
 #include <thread>
+#include <utility>
 
 namespace drtv::client {
 namespace {
@@ -17,8 +22,12 @@ namespace {
 std::atomic<bool> interrupt_seen{false};
 std::array<int, 2> wake_pipe = {-1, -1};
 
+// gRPC ends a cancelled call only after the write that is under way, and a line that stands still takes none.
+constexpr std::chrono::milliseconds cancel_patience{500};
+
 std::mutex open_calls_mutex;
-std::set<grpc::ClientContext*> open_calls;  // guarded by open_calls_mutex
+// With what ctrl-C during the call says; guarded by open_calls_mutex.
+std::map<grpc::ClientContext*, std::string> open_calls;
 
 // A handler may do no more than this.
 void on_interrupt(int) {
@@ -30,9 +39,15 @@ void on_interrupt(int) {
 void cancel_calls_on_interrupt() {
     char byte = 0;
     while (::read(wake_pipe[0], &byte, 1) != 0) {
+        {
+            const std::lock_guard lock(open_calls_mutex);
+            for (const auto& [context, sentence] : open_calls)
+                context->TryCancel();
+        }
+        std::this_thread::sleep_for(cancel_patience);
         const std::lock_guard lock(open_calls_mutex);
-        for (grpc::ClientContext* context : open_calls)
-            context->TryCancel();
+        if (!open_calls.empty())
+            std::_Exit(cli::complain({cli::exit_interrupted, open_calls.begin()->second}));
     }
 }
 
@@ -52,9 +67,9 @@ bool interrupted() {
     return interrupt_seen;
 }
 
-InterruptGuard::InterruptGuard(grpc::ClientContext& context) : context_(context) {
+InterruptGuard::InterruptGuard(grpc::ClientContext& context, std::string sentence) : context_(context) {
     const std::lock_guard lock(open_calls_mutex);
-    open_calls.insert(&context_);
+    open_calls.emplace(&context_, std::move(sentence));
     if (interrupted())
         context_.TryCancel();
 }

@@ -1,6 +1,8 @@
 // Ctrl-C: noted, so that a command ends in good order, and calls that wait end with it.
 #pragma once
 
+#include <string>
+
 namespace grpc {
 class ClientContext;
 }
@@ -13,10 +15,12 @@ void catch_interrupt();
 // Whether ctrl-C has been seen since. Thread-safe.
 [[nodiscard]] bool interrupted();
 
-// Cancels a call as soon as ctrl-C is seen. The context must outlive it.
+// Cancels a call as soon as ctrl-C is seen. A call that does not let go even so, because the line takes no
+// byte of what is under way, ends the program: it complains with `sentence` and exits with exit_interrupted.
+// The context must outlive it.
 class InterruptGuard {
   public:
-    explicit InterruptGuard(grpc::ClientContext& context);
+    explicit InterruptGuard(grpc::ClientContext& context, std::string sentence = "interrupted");
     ~InterruptGuard();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;

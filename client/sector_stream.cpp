@@ -20,6 +20,8 @@
 namespace drtv::client {
 namespace {
 
+constexpr auto interrupted_pull = "interrupted; the same command goes on where this one ended";
+
 struct ArrivedFile {
     v1::Sector sector;
     std::string bytes;
@@ -132,7 +134,7 @@ cli::Result<void> stream_sectors(ServerConnection& connection,
                                  const std::string& folder,
                                  const std::function<void(const v1::Sector&)>& written) {
     grpc::ClientContext context;
-    const InterruptGuard guard(context);
+    const InterruptGuard guard(context, interrupted_pull);
     const auto reader = connection.sectors->PullSectors(&context, wanted);
     Writers writers(folder, wanted.sectors_size(), written);
     v1::PullSectorsResponse message;
@@ -155,7 +157,7 @@ cli::Result<void> stream_sectors(ServerConnection& connection,
         result = cli::fail(cli::exit_server,
                            fmt::format("bakerd sent {} of {} files", writers.count(), wanted.sectors_size()));
     if (interrupted())
-        return cli::fail(cli::exit_interrupted, "interrupted; the same command goes on where this one ended");
+        return cli::fail(cli::exit_interrupted, interrupted_pull);
     if (result && !status.ok())
         return tl::unexpected(connection.failure(status));
     return result;

@@ -23,6 +23,7 @@ constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
 // after anything of it arrived.
 constexpr std::chrono::seconds upload_patience{60};
 constexpr std::chrono::milliseconds upload_pause{200};
+constexpr auto interrupted_upload = "interrupted; what was uploaded stays with the server";
 
 struct Transfer {
     std::int64_t sent = 0;
@@ -64,7 +65,7 @@ cli::Result<grpc::Status> send_blob(ServerConnection& connection,
         return cli::fail(cli::exit_unreadable,
                          fmt::format("cannot read {}: {}", file.disk_path, std::strerror(errno)));
     grpc::ClientContext context;
-    const InterruptGuard guard(context);
+    const InterruptGuard guard(context, interrupted_upload);
     v1::UploadBlobResponse response;
     const auto writer = connection.blobs->UploadBlob(&context, &response);
     v1::UploadBlobRequest request;
@@ -123,7 +124,7 @@ cli::Result<void> upload_file(ServerConnection& connection, const MapContentFile
             break;
     }
     if (interrupted())
-        return cli::fail(cli::exit_interrupted, "interrupted; what was uploaded stays with the server");
+        return cli::fail(cli::exit_interrupted, interrupted_upload);
     // It changed while it was uploaded.
     const cli::Failure failure = connection.failure(status, cli::exit_unreadable);
     return cli::fail(failure.code, fmt::format("cannot upload {}: {}", file.disk_path, failure.sentence));

@@ -13,6 +13,8 @@ def cutting_proxy(address, cut_after, stall_after=None):
     more than `stall_after` bytes (None: all)."""
     host, port = address.rsplit(":", 1)
     listener = socket.create_server(("127.0.0.1", 0))
+    if stall_after is not None:  # the sender's own buffer fills, too
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
     stopping = threading.Event()
     is_first = True
 
