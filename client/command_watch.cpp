@@ -2,18 +2,24 @@
 
 #include "client/interrupt.h"
 #include "client/job_end.h"
+#include "client/job_report.h"
 #include "client/job_text.h"
 #include "client/number_text.h"
 #include "client/progress.h"
 #include "client/reconnection.h"
+#include "client/sector_list.h"
 #include "format/cli/report.h"
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <iterator>
 #include <optional>
+#include <set>
+#include <vector>
 
 namespace drtv::client {
 namespace {
@@ -84,6 +90,14 @@ grpc::Status follow(ServerConnection& connection,
     return reader->Finish();
 }
 
+std::vector<std::string> untold_warnings(const auto& warnings, const std::set<std::string>& told) {
+    std::vector<std::string> untold;
+    std::ranges::copy_if(warnings, std::back_inserter(untold), [&](const std::string& warning) {
+        return !told.contains(warning);
+    });
+    return untold;
+}
+
 }  // namespace
 
 cli::Result<v1::Job> watch_job(ServerConnection& connection,
@@ -122,9 +136,27 @@ cli::Result<v1::Job> watch_job(ServerConnection& connection,
 }
 
 cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1::Job& job) {
-    for (const std::string& warning : job.warnings())
+    JobReport report;
+    const auto listed =
+        for_each_sector(connection, job.name(), [&](const v1::Sector& sector) { report.add(sector); });
+    if (!listed)
+        cli::warn(
+            fmt::format("the warnings of the job's sectors are not known: {}", listed.error().sentence));
+    const std::vector<std::string>& told = cli::warnings_told();
+    const std::set<std::string> told_before(told.begin(), told.end());
+    for (const std::string& warning : untold_warnings(job.warnings(), told_before))
         cli::warn(warning);
-    std::puts((connection.options.json ? json_line(job) : one_line(job)).c_str());
+    std::vector<std::string> of_sectors;
+    for (const auto& [thing, of_thing] : report.warnings)
+        std::ranges::transform(of_thing, std::back_inserter(of_sectors), &JobReport::Warning::sentence);
+    const auto more = untold_warnings(of_sectors, {told.begin(), told.end()});
+    if (connection.options.json) {
+        for (const std::string& warning : more)
+            cli::warn(warning);
+    } else if (!more.empty()) {
+        cli::note(fmt::format("{} more warnings: bake report {}", more.size(), job_number(job)));
+    }
+    std::puts((connection.options.json ? json_line(job, &report) : one_line(job)).c_str());
     return end_of(job);
 }
 

@@ -22,7 +22,8 @@ struct WatchOptions {
                                              const std::string& job,
                                              const WatchOptions& options);
 
-// Says how a job ended, after its warnings. Gives the exit status (end_of).
+// Says how a job ended, after its warnings: all of them under --json, else the first, and how many more there
+// are. Gives the exit status (end_of).
 [[nodiscard]] cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1::Job& job);
 
 [[nodiscard]] cli::Result<cli::ExitCode> run_watch(ServerConnection& connection,

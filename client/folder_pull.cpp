@@ -5,6 +5,7 @@
 #include "client/job_text.h"
 #include "client/number_text.h"
 #include "client/reconnection.h"
+#include "client/sector_list.h"
 #include "client/sector_stream.h"
 #include "format/cli/report.h"
 #include "format/folder/whole_file.h"
@@ -104,20 +105,10 @@ cli::Result<v1::PullSectorsRequest> FolderPull::missing_files() {
     std::error_code code;
     for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code))
         names_there_.insert(entry->path().filename().string());
-    v1::ListSectorsRequest request;
-    request.set_job(job_.name());
-    request.set_page_size(2'000);
-    for (bool more = true; more;) {
-        v1::ListSectorsResponse response;
-        const grpc::Status status =
-            call(*connection_.sectors, &v1::Sectors::Stub::ListSectors, request, response);
-        if (!status.ok())
-            return tl::unexpected(connection_.failure(status));
-        for (const v1::Sector& sector : response.sectors())
-            note_sector(sector, wanted);
-        request.set_page_token(response.next_page_token());
-        more = !response.next_page_token().empty();
-    }
+    auto listed = for_each_sector(
+        connection_, job_.name(), [&](const v1::Sector& sector) { note_sector(sector, wanted); });
+    if (!listed)
+        return tl::unexpected(listed.error());
     return wanted;
 }
 

@@ -17,14 +17,6 @@ std::string last_part(const std::string& resource) {
     return resource.substr(resource.find('/') + 1);
 }
 
-// From its making to its end; 0 before.
-double seconds_of(const Job& job) {
-    if (!job.has_end_time())
-        return 0;
-    const auto nanoseconds = static_cast<double>(job.end_time().nanos() - job.create_time().nanos());
-    return static_cast<double>(job.end_time().seconds() - job.create_time().seconds()) + nanoseconds * 1e-9;
-}
-
 // Those that are not the preset's.
 void add_settings(const Job& job, Json& json) {
     const auto settings = settings::read_settings(job);
@@ -41,6 +33,13 @@ void add_settings(const Job& job, Json& json) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json causes_json(const JobReport& report) {
+    Json causes = Json::array();
+    for (const auto& [cause, sectors] : report.causes())
+        causes.push_back({{"cause", cause}, {"sectors", sectors}});
+    return causes;
+}
 
 std::string job_number(const Job& job) {
     return last_part(job.name());
@@ -63,11 +62,18 @@ std::string state_name(Job::State state) {
     }
 }
 
+double seconds_of(const Job& job) {
+    if (!job.has_end_time())
+        return 0;
+    const auto nanoseconds = static_cast<double>(job.end_time().nanos() - job.create_time().nanos());
+    return static_cast<double>(job.end_time().seconds() - job.create_time().seconds()) + nanoseconds * 1e-9;
+}
+
 bool has_ended(const Job& job) {
     return job.state() == Job::SUCCEEDED || job.state() == Job::FAILED || job.state() == Job::CANCELLED;
 }
 
-std::string json_line(const Job& job) {
+std::string json_line(const Job& job, const JobReport* report) {
     Json json;
     json["kind"] = "job";
     json["job"] = job_number(job);
@@ -98,6 +104,8 @@ std::string json_line(const Job& job) {
     // What this command has told, of the map too.
     if (has_ended(job))
         json["warnings"] = cli::warnings_told();
+    if (report != nullptr)
+        json["causes"] = causes_json(*report);
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

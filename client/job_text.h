@@ -1,7 +1,10 @@
 // A job in words and as JSON.
 #pragma once
 
+#include "client/job_report.h"
 #include "drtv/v1/job.pb.h"
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 
@@ -12,9 +15,12 @@ using v1::Job;
 [[nodiscard]] std::string job_number(const Job& job);    // "12"
 [[nodiscard]] std::string state_name(Job::State state);  // "succeeded"
 [[nodiscard]] bool has_ended(const Job& job);
+[[nodiscard]] double seconds_of(const Job& job);  // from its making to its end; 0 before
 
-[[nodiscard]] std::string json_line(const Job& job);  // one object
-[[nodiscard]] std::string one_line(const Job& job);   // "job 12 succeeded: 140 of 140 sectors ..."
+[[nodiscard]] nlohmann::ordered_json causes_json(const JobReport& report);
+// One object; with `report` also why its sectors were not in the cache.
+[[nodiscard]] std::string json_line(const Job& job, const JobReport* report = nullptr);
+[[nodiscard]] std::string one_line(const Job& job);  // "job 12 succeeded: 140 of 140 sectors ..."
 
 // ", 12 of them from the cache, 3 nearly the same (at most 0.1 % off)"; empty when all are baked.
 [[nodiscard]] std::string reused_text(const Job& job);

@@ -3,6 +3,7 @@
 #include "client/command_list.h"
 #include "client/command_plan.h"
 #include "client/command_pull.h"
+#include "client/command_report.h"
 #include "client/command_submit.h"
 #include "client/command_watch.h"
 #include "client/server_file.h"
@@ -111,9 +112,11 @@ void add_job_commands(CLI::App& app, Arguments& to) {
     CLI::App* watch = app.add_subcommand("watch", "Show a job's progress until it ends");
     CLI::App* wait = app.add_subcommand("wait", "Wait for a job's end, and say no more than that");
     CLI::App* cancel = app.add_subcommand("cancel", "Stop a job; what is done stays");
+    CLI::App* report = app.add_subcommand(
+        "report", "A job in numbers: time by stage, probes dropped, error reached, warnings by object");
     CLI::App* retry = app.add_subcommand("retry", "Bake the sectors again that have failed");
     CLI::App* pull = app.add_subcommand("pull", "Write a job's finished sector files to a folder");
-    for (CLI::App* command : {status, watch, wait, cancel, retry, pull})
+    for (CLI::App* command : {status, watch, wait, report, cancel, retry, pull})
         command->add_option("JOB", to.job, "Number of the job")->required();
     for (CLI::App* command : {watch, wait})
         add_timeout(*command, to.submit);
@@ -127,6 +130,7 @@ void add_job_commands(CLI::App& app, Arguments& to) {
     when_called(*wait, to, [&to](ServerConnection& connection) {
         return run_watch(connection, to.job, {.timeout_s = to.submit.timeout_s, .quiet = true});
     });
+    when_called(*report, to, [&to](ServerConnection& connection) { return run_report(connection, to.job); });
     when_called(*retry, to, [&to](ServerConnection& connection) { return run_retry(connection, to.job); });
     when_called(*cancel, to, [&to](ServerConnection& connection) { return run_cancel(connection, to.job); });
     when_called(*pull, to, [&to](ServerConnection& connection) {

@@ -52,17 +52,22 @@ class SectorBake {
           settings_(settings),
           given_(given),
           watch_(watch),
-          around_(world.surroundings(coordinate, settings)) {}
+          around_(world.surroundings(coordinate, settings)) {
+        baked_.seconds.scene = stopwatch_.lap();
+    }
 
     tl::expected<BakedSector, std::string> run() {
+        stopwatch_.lap();
         const auto placed = given_.placement ? std::make_shared<const Placed>(*given_.placement)
                                              : world_.placed(coordinate_, settings_, *around_.scene);
         if (!*placed)
             return tl::unexpected(placed->error());
         begin(**placed);
+        baked_.seconds.placement = stopwatch_.lap();
         // Isolated: a thread that waits for the rest of its sector must not start another one in between.
         tbb::this_task_arena::isolate(
             [&] { tbb::parallel_invoke([&] { integrate_probes(); }, [&] { index_probes(); }); });
+        baked_.seconds.transfer = stopwatch_.lap();
         if (auto stored = store_probes(probes_, baked_.sector); !stored)
             return tl::unexpected(stored.error());
         complete_quality(**placed);
@@ -72,8 +77,10 @@ class SectorBake {
         warn_of_all();
         if (auto stored = store_interiors(world_.interiors(), baked_.positions, baked_.sector); !stored)
             return tl::unexpected(stored.error());
+        stopwatch_.lap();
         if (settings_.local_transfer)
             tbb::this_task_arena::isolate([&] { bake_local(**placed); });
+        baked_.seconds.local_transfer = stopwatch_.lap();
         sort_tests(baked_.solid_tests);
         return std::move(baked_);
     }
@@ -203,6 +210,7 @@ class SectorBake {
     const settings::BakeSettings& settings_;
     const Given& given_;
     const WatchOfThread& watch_;
+    Stopwatch stopwatch_;
     const Surroundings around_;
 
     BakedSector baked_;

@@ -5,6 +5,7 @@
 #include "bakerd/bake/placed_sector.h"
 #include "bakerd/bake/probe_encoding.h"
 #include "bakerd/bake/ray_watch.h"
+#include "bakerd/bake/stage_seconds.h"
 #include "bakerd/bake/world.h"
 #include "settings/bake_settings.h"
 
@@ -49,6 +50,7 @@ struct BakedSector {
     // On which its placement rests, and with local transfer its neighbours'; by place, one of each.
     std::vector<placement::SolidTest> solid_tests;
     std::vector<std::string> placement_warnings;  // of `warnings`, those that follow from the placement
+    StageSeconds seconds;                         // all but those of `files`
 };
 
 // Runs on the calling thread's TBB arena. Fails with a sentence (too many manual probes; too high a sector).

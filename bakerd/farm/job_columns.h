@@ -66,12 +66,17 @@ void columns(auto& codec, Is<JobSectorRow> auto& sector) {
     codec("i", sector.sector.i);
     codec("j", sector.sector.j);
     codec("state", sector.state);
+    codec("cause", sector.cause);
+    codec("origin", sector.origin);
     codec("file", sector.file);
     codec("file_bytes", sector.file_bytes);
     codec("probes", sector.probes);
     codec("rays", sector.rays);
     codec("bound", sector.bound);
     codec("warnings", sector.warnings);
+    worker::visit_values(codec, sector.numbers);
+    codec("seconds", sector.seconds);
+    bake::visit_values(codec, sector.stages);
     codec("failed_attempts", sector.failed_attempts);
     codec("error", sector.error);
 }

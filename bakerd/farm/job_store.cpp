@@ -16,16 +16,20 @@ namespace {
 // Sectors that are written in one go while others wait.
 constexpr std::size_t portion = 1000;
 
-JobSectorRow waiting_row(std::int64_t job, map::SectorCoordinate sector) {
+JobSectorRow waiting_row(std::int64_t job, map::SectorCoordinate sector, const std::string& cause) {
     JobSectorRow row;
     row.job = job;
     row.sector = sector;
+    row.cause = cause;
     return row;
 }
 
 JobSectorRow row_of(const PlannedSector& planned, std::int64_t job) {
-    return planned.reused ? done_row(job, planned.sector, planned.reused->result, planned.bound)
-                          : waiting_row(job, planned.sector);
+    if (!planned.reused)
+        return waiting_row(job, planned.sector, planned.cause);
+    JobSectorRow row = reused_row(job, planned.sector, planned.reused->result, planned.bound);
+    row.cause = planned.cause;
+    return row;
 }
 
 void count_reused(const PlannedSector& planned, JobRow& job) {
@@ -59,7 +63,7 @@ void recount(Connection& connection, std::span<Checked<JobSectorRow>> sectors, J
                          job.id,
                          sector.row.sector.i,
                          sector.row.sector.j);
-            sector.row = waiting_row(job.id, sector.row.sector);
+            sector.row = waiting_row(job.id, sector.row.sector, "");
             replace_sector(connection, sector.row);
         }
         counted.sectors_done += sector.row.state == SectorState::done ? 1 : 0;
@@ -172,7 +176,7 @@ store::Result<void> retry_job(Database& database, std::int64_t id, JobBook& book
         for (Checked<JobSectorRow>& sector : sectors) {
             if (sector.row.state != SectorState::failed)
                 continue;
-            sector.row = waiting_row(id, sector.row.sector);
+            sector.row = waiting_row(id, sector.row.sector, sector.row.cause);
             replace_sector(connection, sector.row);
         }
         JobRow row = job->row;

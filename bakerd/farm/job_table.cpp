@@ -61,20 +61,30 @@ std::string first_failure(Connection& connection, const JobRow& job) {
 
 }  // namespace
 
-JobSectorRow done_row(std::int64_t job,
-                      map::SectorCoordinate sector,
-                      const worker::SectorResult& result,
-                      float bound) {
+JobSectorRow reused_row(std::int64_t job,
+                        map::SectorCoordinate sector,
+                        const worker::SectorResult& result,
+                        float bound) {
     JobSectorRow row;
     row.job = job;
     row.sector = sector;
     row.state = SectorState::done;
+    row.origin = bound > 0 ? SectorOrigin::near_hit : SectorOrigin::hit;
     row.file = result.blobs.file;
     row.file_bytes = result.file_bytes;
     row.probes = result.probes;
     row.rays = result.rays;
     row.bound = bound;
     row.warnings = result.warnings;
+    row.numbers = result.numbers;
+    return row;
+}
+
+JobSectorRow baked_row(std::int64_t job, map::SectorCoordinate sector, const worker::SectorResult& result) {
+    JobSectorRow row = reused_row(job, sector, result, result.bound);
+    row.origin = SectorOrigin::baked;
+    row.seconds = result.seconds;
+    row.stages = result.stages;
     return row;
 }
 
@@ -112,17 +122,14 @@ std::optional<JobRow> record_sector(Connection& connection, const JobSectorRow& 
     std::optional<Checked<JobRow>> found = find_job(connection, sector.job);
     if (!found || !found->sound || found->row.state != JobState::running)
         return std::nullopt;
-    SQLite::Statement& statement = connection.statement(
-        update<JobSectorRow>("job_sector", "WHERE job = :job AND i = :i AND j = :j AND state = :waiting"));
-    statement.bind(":waiting", static_cast<std::int64_t>(SectorState::waiting));
-    write_row(statement, sector);
     JobRow& job = found->row;
-    if (connection.raw().getChanges() == 0) {
-        const auto known = sector_of_job(connection, sector.job, sector.sector);
-        if (known && known->sound)
-            return std::move(job);  // it was counted already
-        replace_sector(connection, sector);
-    }
+    const auto known = sector_of_job(connection, sector.job, sector.sector);
+    const bool is_sound = known && known->sound;
+    if (is_sound && known->row.state != SectorState::waiting)
+        return std::move(job);  // it was counted already
+    JobSectorRow row = sector;
+    row.cause = is_sound ? known->row.cause : "";
+    replace_sector(connection, row);
     if (sector.state == SectorState::done) {
         ++job.sectors_done;
         job.probes += sector.probes;

@@ -24,8 +24,9 @@ void update_job(Connection& connection, const JobRow& job);
 // Whatever it was before.
 void replace_sector(Connection& connection, const JobSectorRow& sector);
 
-// What one sector of a job has come to: `sector.state` is done or failed. Counts it, and ends the job when it
-// was the last. Gives the job as it is then; nothing when it does not run any more, or its row is damaged.
+// What one sector of a job has come to: `sector.state` is done or failed; its cause stays. Counts it, and
+// ends the job when it was the last. Gives the job as it is then; nothing when it does not run any more, or
+// its row is damaged.
 [[nodiscard]] std::optional<JobRow> record_sector(Connection& connection, const JobSectorRow& sector);
 
 // The state that follows from the counts, with a sentence about the first sector that failed.

@@ -78,7 +78,7 @@ store::Result<Plan> look_up(ResultCache& cache,
             reuse_result(planned, std::move(*entry.held), entry.bound);
             continue;
         }
-        planned.reason = reason_of(entry);
+        planned.reason = planned.cause = reason_of(entry);
         planned.candidates = std::move(entry.candidates);
         if (!planned.candidates.empty())
             planned.seconds = planned.candidates.front().result.seconds;
@@ -110,6 +110,7 @@ void merge_answer(const worker::Assessments& answer, Plan& plan) {
             continue;
         const worker::Assessments::Sector& assessed = answer.sectors[next++];
         planned.reason = assessed.reason;
+        planned.cause = assessed.cause;
         if (assessed.candidate >= planned.candidates.size())
             continue;
         const ResultRow candidate = planned.candidates[assessed.candidate];
@@ -143,7 +144,7 @@ void drop_damaged(store::BlobStore& blobs, Plan& plan) {
         planned.verdict = reuse::Verdict::rebake;
         planned.reused.reset();
         planned.bound = 0;
-        planned.reason = lost;
+        planned.reason = planned.cause = lost;
         warn(plan,
              fmt::format("sector ({}, {}): an earlier result cannot be used: {}",
                          planned.sector.i,

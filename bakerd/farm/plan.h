@@ -27,6 +27,7 @@ struct PlannedSector {
     std::optional<ResultRow> reused;    // unless rebake
     float bound = 0;                    // of a near hit
     std::string reason;                 // one sentence; empty of a hit
+    std::string cause;                  // that part of it which other sectors share; likewise
     std::optional<ResultRow> earlier;   // of another map, of which a rebake reuses what holds
     float share = 1;                    // of its probes, that a rebake has to bake
     double seconds = 0;                 // that baking it will take, as far as is known; 0: not

@@ -14,7 +14,7 @@ namespace {
 JobSectorRow row_of(const FinishedSector& sector, std::int64_t job) {
     JobSectorRow row;
     if (sector.reply)
-        row = done_row(job, sector.key.sector, *sector.reply, sector.reply->bound);
+        row = baked_row(job, sector.key.sector, *sector.reply);
     row.job = job;
     row.sector = sector.key.sector;
     row.failed_attempts = sector.failed_attempts;

@@ -14,7 +14,9 @@
 
 namespace drtv::farm {
 
+using bake::StageSeconds;
 using map::Digest;
+using worker::SectorNumbers;
 
 // Persisted: a number never changes its meaning.
 enum class JobState : std::uint8_t {
@@ -25,6 +27,13 @@ enum class JobState : std::uint8_t {
     creating = 4,  // not all of its sectors are written yet: nobody knows of it
 };
 enum class SectorState : std::uint8_t { waiting = 0, done = 1, failed = 2 };
+// Where a file comes from.
+enum class SectorOrigin : std::uint8_t {
+    unknown = 0,  // recorded by a bakerd that did not tell them apart
+    baked = 1,
+    hit = 2,       // as baking would give it
+    near_hit = 3,  // off by less than the tolerance
+};
 
 struct JobRow {
     std::int64_t id = 0;
@@ -52,23 +61,31 @@ struct JobSectorRow {
     std::int64_t job = 0;
     map::SectorCoordinate sector;
     SectorState state = SectorState::waiting;
+    std::string cause;  // why no earlier result is as good; empty where one is
     // When done.
+    SectorOrigin origin = SectorOrigin::unknown;
     Digest file;
     std::int64_t file_bytes = 0;
     std::int64_t probes = 0;
     std::int64_t rays = 0;
     float bound = 0;  // how far it may be off, with a result of another map (reuse/assessment.h)
     std::vector<std::string> warnings;
+    SectorNumbers numbers;
+    double seconds = 0;  // that its bake took, and of what: 0 unless it was baked
+    StageSeconds stages;
     // When failed.
     int failed_attempts = 0;
     std::string error;
 };
 
-// A sector whose file is that of a result.
-[[nodiscard]] JobSectorRow done_row(std::int64_t job,
-                                    map::SectorCoordinate sector,
-                                    const worker::SectorResult& result,
-                                    float bound);
+// A sector whose file is that of a result: one that was baked for it, or one that was kept.
+[[nodiscard]] JobSectorRow baked_row(std::int64_t job,
+                                     map::SectorCoordinate sector,
+                                     const worker::SectorResult& result);
+[[nodiscard]] JobSectorRow reused_row(std::int64_t job,
+                                      map::SectorCoordinate sector,
+                                      const worker::SectorResult& result,
+                                      float bound);
 
 // A baked sector, kept for the map of which it was baked and any other for which it still holds.
 struct ResultRow {

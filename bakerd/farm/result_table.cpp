@@ -21,6 +21,7 @@ static void columns(auto& codec, Is<ResultRow> auto& row) {
     codec("warnings", row.result.warnings);
     codec("seconds", row.result.seconds);
     codec("bound", row.result.bound);
+    worker::visit_values(codec, row.result.numbers);
 }
 
 static void columns(auto& codec, Is<HoldRow> auto& hold) {

@@ -77,10 +77,15 @@ std::string describe(const Change& change) {
 }
 
 std::string describe(const Assessment& assessment, std::span<const Change> changes) {
-    if (assessment.change) {
-        const Change& change = changes[*assessment.change];
-        return fmt::format("{}: {}", describe(change), words_for(assessment, change.item()));
-    }
+    const std::string cause = describe_cause(assessment, changes);
+    if (!assessment.change)
+        return cause;
+    return fmt::format("{}: {}", cause, words_for(assessment, changes[*assessment.change].item()));
+}
+
+std::string describe_cause(const Assessment& assessment, std::span<const Change> changes) {
+    if (assessment.change)
+        return describe(changes[*assessment.change]);
     if (assessment.verdict == Verdict::rebake)
         return "what is kept of it may be off by more than is asked";
     return "";

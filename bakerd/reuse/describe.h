@@ -16,4 +16,7 @@ namespace drtv::reuse {
 // assessed.
 [[nodiscard]] std::string describe(const Assessment& assessment, std::span<const Change> changes);
 
+// That part of it which other sectors share: "palm_017 moved".
+[[nodiscard]] std::string describe_cause(const Assessment& assessment, std::span<const Change> changes);
+
 }  // namespace drtv::reuse

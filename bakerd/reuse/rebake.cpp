@@ -114,6 +114,7 @@ class Recording {
           sector_(sector),
           settings_(settings),
           scene_(world.surroundings(sector, settings).scene),
+          scene_s_(stopwatch_.lap()),
           grid_(footprint_grid(sector, settings, world)),
           recorders_(sector, grid_) {}
 
@@ -130,6 +131,7 @@ class Recording {
         if (!baked)
             return tl::unexpected(baked.error());
         Rebake result{std::move(*baked), {}, 0};
+        result.baked.seconds.scene += scene_s_;
         record_settings(result.footprint);
         record_probes(result, earlier);
         record_static_light(result, earlier);
@@ -203,7 +205,9 @@ class Recording {
     bake::World& world_;
     const map::SectorCoordinate sector_;
     const settings::BakeSettings& settings_;
+    bake::Stopwatch stopwatch_;
     const std::shared_ptr<const trace::Scene> scene_;
+    const double scene_s_;  // that building it took, where no neighbour had
     const FootprintGrid grid_;
     FootprintRecorders recorders_;
 };

@@ -24,6 +24,43 @@ v1::Sector::State to_proto(const farm::JobSectorView& view) {
     return v1::Sector::STATE_UNSPECIFIED;
 }
 
+v1::Sector::Origin to_proto(farm::SectorOrigin origin) {
+    switch (origin) {
+        case farm::SectorOrigin::baked:
+            return v1::Sector::BAKED;
+        case farm::SectorOrigin::hit:
+            return v1::Sector::HIT;
+        case farm::SectorOrigin::near_hit:
+            return v1::Sector::NEAR_HIT;
+        case farm::SectorOrigin::unknown:
+            break;
+    }
+    return v1::Sector::ORIGIN_UNSPECIFIED;
+}
+
+void fill_numbers(const farm::SectorNumbers& numbers, v1::Sector& out) {
+    v1::Placement& placement = *out.mutable_placement();
+    placement.set_candidates(numbers.candidates);
+    placement.set_too_near(numbers.too_near);
+    placement.set_moved_out(numbers.moved_out);
+    placement.set_dropped_in_solid(numbers.dropped_in_solid);
+    placement.set_removed_by_volume(numbers.removed_by_volume);
+    placement.set_thinned(numbers.thinned);
+    v1::ReachedError& error = *out.mutable_reached_error();
+    error.set_median(numbers.error_median);
+    error.set_p95(numbers.error_p95);
+    error.set_max(numbers.error_max);
+    error.set_budget_ended(numbers.budget_ended);
+}
+
+void fill_stages(const farm::StageSeconds& stages, v1::StageSeconds& out) {
+    out.set_scene(stages.scene);
+    out.set_placement(stages.placement);
+    out.set_transfer(stages.transfer);
+    out.set_local_transfer(stages.local_transfer);
+    out.set_files(stages.files);
+}
+
 void fill(const farm::JobSectorView& view, v1::Sector& out) {
     const farm::JobSectorRow& row = view.row;
     out.mutable_coordinate()->set_i(row.sector.i);
@@ -31,6 +68,7 @@ void fill(const farm::JobSectorView& view, v1::Sector& out) {
     out.set_state(to_proto(view));
     out.set_failed_attempts(row.failed_attempts);
     out.set_error(row.error);
+    out.set_cause(row.cause);
     if (row.state != farm::SectorState::done)
         return;
     out.set_sha256(to_hex(row.file));
@@ -39,6 +77,10 @@ void fill(const farm::JobSectorView& view, v1::Sector& out) {
     out.set_rays(row.rays);
     for (const std::string& warning : row.warnings)
         out.add_warnings(warning);
+    out.set_origin(to_proto(row.origin));
+    fill_numbers(row.numbers, out);
+    if (row.origin == farm::SectorOrigin::baked)
+        fill_stages(row.stages, *out.mutable_stages());
 }
 
 }  // namespace

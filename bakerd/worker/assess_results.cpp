@@ -66,7 +66,7 @@ class Assessing {
   private:
     Assessments::Sector assess(const AssessRequest::Sector& sector) {
         Assessments::Sector best;
-        best.reason = "its earlier results are lost";
+        best.reason = best.cause = "its earlier results are lost";
         bool first = true;
         for (std::size_t c = 0; c < sector.candidates.size(); ++c) {
             const auto changes = map_.changes->map(sector.candidates[c].inventory);
@@ -82,12 +82,16 @@ class Assessing {
             const reuse::Assessment assessment =
                 reuse::assess(*footprint, request_.settings, **changes, *map_.world);
             if (assessment.verdict == reuse::Verdict::hit)
-                return {assessment.verdict, c, 0, 0, ""};
+                return {assessment.verdict, c, 0, 0, "", ""};
             const bool near = assessment.verdict == reuse::Verdict::near_hit;
             const float share = near ? 0 : reuse::share_to_bake(assessment);
             if (first || share < best.share || (near && assessment.bound < best.bound)) {
-                const std::string reason = reuse::describe(assessment, **changes);
-                best = {assessment.verdict, c, assessment.bound, share, reason};
+                best = {assessment.verdict,
+                        c,
+                        assessment.bound,
+                        share,
+                        reuse::describe(assessment, **changes),
+                        reuse::describe_cause(assessment, **changes)};
             }
             first = false;
         }

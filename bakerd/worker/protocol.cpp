@@ -69,6 +69,14 @@ void fields(auto& codec, Is<MapSummary> auto& summary) {
     codec("warnings", summary.warnings);
 }
 
+void fields(auto& codec, Is<SectorNumbers> auto& numbers) {
+    worker::visit_values(codec, numbers);
+}
+
+void fields(auto& codec, Is<bake::StageSeconds> auto& stages) {
+    bake::visit_values(codec, stages);
+}
+
 void fields(auto& codec, Is<SectorResult> auto& result) {
     codec("blobs", result.blobs);
     codec("file_bytes", result.file_bytes);
@@ -78,6 +86,8 @@ void fields(auto& codec, Is<SectorResult> auto& result) {
     codec("warnings", result.warnings);
     codec("seconds", result.seconds);
     codec("bound", result.bound);
+    codec("numbers", result.numbers);
+    codec("stages", result.stages);
 }
 
 void fields(auto& codec, Is<Assessments::Sector> auto& sector) {
@@ -86,6 +96,7 @@ void fields(auto& codec, Is<Assessments::Sector> auto& sector) {
     codec("bound", sector.bound);
     codec("share", sector.share);
     codec("reason", sector.reason);
+    codec("cause", sector.cause);
 }
 
 void fields(auto& codec, Is<MapChange> auto& change) {

@@ -1,6 +1,7 @@
 // What the daemon asks its workers, and what they answer.
 #pragma once
 
+#include "bakerd/bake/stage_seconds.h"
 #include "bakerd/map/digest.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/map/map.h"
@@ -59,6 +60,37 @@ struct MapSummary {
     std::vector<std::string> warnings;  // one sentence each
 };
 
+// What became of the places for probes, and how far their paths came: of a sector's file (drtv/sector.h).
+struct SectorNumbers {
+    std::int64_t candidates = 0;
+    std::int64_t too_near = 0;  // another probe is nearer than the minimal distance, and sees the place
+    std::int64_t moved_out = 0;
+    std::int64_t dropped_in_solid = 0;
+    std::int64_t removed_by_volume = 0;
+    std::int64_t thinned = 0;
+    // Relative standard errors over its probes, and how many of these ended before the error asked for.
+    double error_median = 0;
+    double error_p95 = 0;
+    double error_max = 0;
+    std::int64_t budget_ended = 0;
+
+    bool operator==(const SectorNumbers&) const = default;
+};
+
+// Each with the name it has in messages and in the database.
+void visit_values(auto& codec, auto& numbers) {
+    codec("candidates", numbers.candidates);
+    codec("too_near", numbers.too_near);
+    codec("moved_out", numbers.moved_out);
+    codec("dropped_in_solid", numbers.dropped_in_solid);
+    codec("removed_by_volume", numbers.removed_by_volume);
+    codec("thinned", numbers.thinned);
+    codec("error_median", numbers.error_median);
+    codec("error_p95", numbers.error_p95);
+    codec("error_max", numbers.error_max);
+    codec("budget_ended", numbers.budget_ended);
+}
+
 // Answer to BakeRequest.
 struct SectorResult {
     ResultBlobs blobs;
@@ -70,6 +102,8 @@ struct SectorResult {
     double seconds = 0;                 // that a bake from nothing takes, beside other sectors
     float bound =
         0;  // on how far it is off, where probes of another map's result were reused (reuse/assessment.h)
+    SectorNumbers numbers;
+    bake::StageSeconds stages;
 };
 
 // Something that is not as it was in the map of a result, with where it is and was.
@@ -90,6 +124,7 @@ struct Assessments {
         float bound = 0;
         float share = 1;     // of its probes, that a rebake has to bake
         std::string reason;  // one sentence; empty of a hit
+        std::string cause;   // that part of it which other sectors share; likewise
     };
     std::vector<Sector> sectors;        // in the order of the request
     std::vector<MapChange> changes;     // the first of them, without those that stand nowhere

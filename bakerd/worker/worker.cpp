@@ -16,7 +16,7 @@
 #include <tbb/task_group.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -25,6 +25,28 @@
 
 namespace drtv::worker {
 namespace {
+
+SectorNumbers numbers_of(const Sector& sector) {
+    const Statistics& statistics = sector.statistics;
+    SectorNumbers numbers;
+    numbers.candidates = statistics.candidates;
+    numbers.moved_out = statistics.moved_out;
+    numbers.dropped_in_solid = statistics.dropped_in_solid;
+    numbers.removed_by_volume = statistics.removed_by_volume;
+    numbers.thinned = statistics.thinned;
+    // All other places have a probe.
+    const auto manual = std::ranges::count(sector.probes, ProbeKind::manual, &Probe::kind);
+    numbers.too_near = numbers.candidates - numbers.dropped_in_solid - numbers.removed_by_volume -
+                       numbers.thinned - (static_cast<std::int64_t>(sector.probes.size()) - manual);
+    if (const auto& convergence = sector.convergence) {
+        numbers.error_median = static_cast<double>(convergence->error_median);
+        numbers.error_p95 = static_cast<double>(convergence->error_p95);
+        numbers.error_max = static_cast<double>(convergence->error_max);
+    }
+    if (sector.quality)
+        numbers.budget_ended = std::ranges::count(sector.quality->probes, true, &ProbeQuality::budget_ended);
+    return numbers;
+}
 
 class Worker {
   public:
@@ -75,7 +97,7 @@ class Worker {
     }
 
     What bake(const BakeRequest& request, const LoadedMap& map) {
-        const auto start = std::chrono::steady_clock::now();
+        bake::Stopwatch stopwatch;
         const trace::FloatMode float_mode;
         std::optional<reuse::EarlierBake> earlier;
         if (request.earlier) {
@@ -94,7 +116,6 @@ class Worker {
         if (!file)
             return RequestFailure{file.error(), false};
         const std::vector<std::uint8_t> footprint = reuse::encode_footprint(rebake->footprint);
-        const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
         const auto blobs = store_result(*file, footprint, map);
         if (!blobs)
             return RequestFailure{blobs.error().message, true};
@@ -104,8 +125,11 @@ class Worker {
         result.footprint_bytes = static_cast<std::int64_t>(footprint.size());
         result.probes = static_cast<std::int64_t>(baked.sector.probes.size());
         result.rays = static_cast<std::int64_t>(baked.sector.statistics.rays);
+        result.numbers = numbers_of(baked.sector);
         result.warnings = std::move(baked.warnings);
-        result.seconds = time.count();
+        result.seconds = stopwatch.lap();
+        result.stages = baked.seconds;
+        result.stages.files = std::max(0.0, result.seconds - baked.seconds.total());
         result.bound = rebake->footprint.bound();
         return result;
     }

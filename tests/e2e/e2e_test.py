@@ -76,6 +76,17 @@ class FarmTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
         return read_folder(folder)
 
+    def dumps(self, daemon, *arguments, name="pulled"):
+        """Of a bake's sectors, with any probes in them."""
+        files = self.pulled(daemon, *arguments, name=name)
+        dumps = [
+            json.loads(
+                self.farm.run("drtv", "dump", os.path.join(self.farm.path(name), file), "--json").stdout
+            )
+            for file in files
+        ]
+        return [dump for dump in dumps if dump["probes"]]
+
     def assert_sentence(self, done, *parts, status=None):
         """Failed, with one line on standard error that holds the parts."""
         if status is None:
@@ -169,17 +180,6 @@ class Baking(FarmTest):
             json.dump(document, file)
         job = last_object(self.farm.bake(daemon, "--json", "submit", island, *REGION, *FEW_RAYS))
         self.assertEqual(job["sectors_cached"], job["sectors_total"])
-
-    def dumps(self, daemon, *arguments, name="pulled"):
-        """Of a bake's sectors, with any probes in them."""
-        files = self.pulled(daemon, *arguments, name=name)
-        dumps = [
-            json.loads(
-                self.farm.run("drtv", "dump", os.path.join(self.farm.path(name), file), "--json").stdout
-            )
-            for file in files
-        ]
-        return [dump for dump in dumps if dump["probes"]]
 
     def test_wall_seen_from_behind_is_told_by_its_name(self):
         daemon = self.farm.daemon()
@@ -753,6 +753,68 @@ class Verdicts(FarmTest):
             self.assertEqual(len(last["warnings"]), 1)
             self.assertIn("12.0 km across", last["warnings"][0])
             self.assertGreaterEqual(last["seconds"], 0)
+
+    def report(self, daemon, job):
+        return last_object(self.farm.bake(daemon, "--json", "report", job))
+
+    def test_a_report_says_what_the_files_say(self):
+        daemon = self.farm.daemon()
+        path = self.island()
+        files = ("--region", "0,0,256,256", *FEW_RAYS)
+        dumps = self.dumps(daemon, path, *files)
+        first = self.report(daemon, "1")
+        for key in ("candidates", "moved_out", "dropped_in_solid", "removed_by_volume", "thinned"):
+            self.assertEqual(first["placement"][key], sum(dump["statistics"][key] for dump in dumps), key)
+        placed = first["placement"]
+        lost = sum(placed[key] for key in ("too_near", "dropped_in_solid", "removed_by_volume", "thinned"))
+        automatic = sum(probe["kind"] != "manual" for dump in dumps for probe in dump["probes"])
+        self.assertEqual(placed["candidates"] - lost, automatic)
+        self.assertEqual(first["causes"][0]["cause"], "it was not baked with these settings before")
+        self.assertGreater(first["stages"]["transfer"], 0)
+        self.assertEqual(len(first["slowest"]), 5)
+        self.assertAlmostEqual(first["slowest"][0]["seconds"], sum(first["slowest"][0]["stages"].values()))
+        # All of it from the cache: it took no time, and is as it was.
+        self.pulled(daemon, path, *files, name="again")
+        again = self.report(daemon, "2")
+        self.assertEqual((again["placement"], again["error"]), (first["placement"], first["error"]))
+        self.assertEqual((again["causes"], again["slowest"], sum(again["stages"].values())), ([], [], 0))
+
+    def test_a_report_names_what_has_changed(self):
+        daemon = self.farm.daemon()
+        settings = (*FEW_RAYS, "--set", "reach=32")
+        self.pulled(
+            daemon,
+            write_map(self.farm.path("map.gltf"), lawn=LAWN, far=[(x + 128, y, z) for x, y, z in LAWN]),
+            *settings,
+        )
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN, far=[(x + 129, y, z) for x, y, z in LAWN])
+        done = self.farm.bake(daemon, "--json", "submit", path, *settings, "--wait")
+        last = last_object(done)
+        self.assertEqual((last["sectors_cached"], last["sectors_baked"]), (1, 1))
+        self.assertEqual(last["causes"], [{"cause": "far changed", "sectors": 1}])
+        self.assertEqual(self.report(daemon, "2")["causes"], last["causes"])
+        text = self.farm.bake(daemon, "report", "2").stdout
+        for part in ("why", "far changed", "placement (", "places", "proposed", "slowest", "sector (2, 0)"):
+            self.assertIn(part, text)
+
+    def test_a_report_has_all_warnings_by_object(self):
+        """More than the first 20: a wall that is seen from behind in each of many sectors."""
+        daemon = self.farm.daemon()
+        quads = {}
+        for n in range(25):
+            quads[f"lawn {n}"] = [(x + 64 * n, y, z) for x, y, z in LAWN]
+            quads[f"wall {n}"] = [(x + 64 * n, y, z) for x, y, z in WALL[::-1]]
+        path = write_map(self.farm.path("map.gltf"), **quads)
+        done = self.farm.bake(daemon, "submit", path, *FEW_RAYS, "--wait")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("5 more warnings: bake report 1", done.stderr)
+        self.assertEqual(done.stderr.count("bake: warning:"), 20)
+        of_sectors = self.report(daemon, "1")["warnings"]
+        self.assertEqual(sum(len(entry["warnings"]) for entry in of_sectors), 25)
+        last = last_object(self.farm.bake(daemon, "--json", "wait", "1"))
+        self.assertEqual(len(last["warnings"]), 25)
+        self.assertIn("wall 7", {entry["object"] for entry in of_sectors})
+        self.assert_sentence(self.farm.bake(daemon, "report", "99"), "there is no job 99", status=USAGE)
 
     def test_wait_says_the_end_alone(self):
         daemon = self.farm.daemon()

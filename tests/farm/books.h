@@ -88,6 +88,8 @@ class BooksTest : public testing::Test {
         made.rays = 1LL << 40;
         made.warnings = {"one", "50 % of its rays, say 'no' to \"quotes\"; DROP TABLE job"};
         made.seconds = 1.5;
+        made.numbers = {9, 8, 7, 6, 5, 4, 0.1, 0.2, 0.3, 3};
+        made.stages = {0.1, 0.2, 0.3, 0.4, 0.5};
         return made;
     }
     Digest put(const std::string& text) { return blobs->put(test::bytes_of(text)).value(); }

@@ -49,6 +49,27 @@ TEST_F(JobTableTest, AReopenedFileHasAllOfIt) {
     EXPECT_FALSE(read([&](Connection& connection) { return sector_of_job(connection, job.id, {9, 9}); }));
 }
 
+TEST_F(JobTableTest, WhatABakeTookAndCameToIsKept) {
+    const JobRow job = add_job({{0, 0}, {1, 0}});
+    const worker::SectorResult result = this->result("a");
+    write([&](Connection& connection) {
+        JobSectorRow waiting = sector_row(job.id, {0, 0});
+        waiting.cause = "palm moved";
+        replace_sector(connection, waiting);
+        EXPECT_TRUE(record_sector(connection, baked_row(job.id, {0, 0}, result)));
+        EXPECT_TRUE(record_sector(connection, reused_row(job.id, {1, 0}, result, 0.5f)));
+    });
+    const Checked<JobSectorRow> baked = sector(job.id, {0, 0});
+    EXPECT_TRUE(baked.sound);
+    EXPECT_EQ(baked.row.cause, "palm moved");
+    EXPECT_EQ(baked.row.origin, SectorOrigin::baked);
+    EXPECT_EQ(std::tuple(baked.row.numbers, baked.row.seconds, baked.row.stages),
+              std::tuple(result.numbers, result.seconds, result.stages));
+    const Checked<JobSectorRow> near = sector(job.id, {1, 0});
+    EXPECT_EQ(std::tuple(near.row.origin, near.row.numbers, near.row.seconds, near.row.stages),
+              std::tuple(SectorOrigin::near_hit, result.numbers, 0.0, StageSeconds()));
+}
+
 TEST_F(JobTableTest, TheLastSectorEndsTheJob) {
     const JobRow job = add_job({{0, 0}, {1, 0}, {2, 0}});
     write([&](Connection& connection) {

@@ -35,6 +35,7 @@ TEST_F(ResultCacheTest, AResultHoldsForTheMapOfWhichItWasBaked) {
     ASSERT_TRUE(entry.held);
     EXPECT_EQ(entry.held->result.blobs.file, digest_of("a"));
     EXPECT_EQ(entry.held->result.warnings, result("a").warnings);
+    EXPECT_EQ(entry.held->result.numbers, result("a").numbers);
     EXPECT_EQ(std::tuple(entry.held->result.file_bytes, entry.held->result.footprint_bytes,
                          entry.held->result.seconds),
               std::tuple(100, 20, 1.5));

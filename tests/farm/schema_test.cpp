@@ -152,10 +152,25 @@ TEST_P(KeptSchemas, KeepResultsForTheirMapAndThoseThatReusedThem) {
         // It has to be looked at again.
         EXPECT_FALSE(
             read(*database, [&](Connection& connection) { return find_map(connection, job->row.manifest); }));
+        const auto sectors =
+            read(*database, [&](Connection& connection) { return sectors_of_job(connection, id); });
+        for (const auto& [sector, sound] : sectors)
+            EXPECT_TRUE(sound && sector.origin == SectorOrigin::unknown);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Versions, KeptSchemas, testing::Values(4, 5, 6));
+INSTANTIATE_TEST_SUITE_P(Versions, KeptSchemas, testing::Values(4, 5, 6, 7));
+
+// A step that sums rows anew must not make a damaged one sound.
+TEST_F(SchemaTest, ARowThatWasDamagedStaysSo) {
+    write_schema(7);
+    SQLite::Database(path, SQLite::OPEN_READWRITE)
+        .exec("UPDATE job_sector SET probes = probes + 1 WHERE job = 1 AND i = 0 AND j = 0");
+    const auto database = open();
+    const auto sectors =
+        read(*database, [](Connection& connection) { return sectors_of_job(connection, 1); });
+    EXPECT_EQ(std::ranges::count(sectors, false, &Checked<JobSectorRow>::sound), 1);
+}
 
 // Their records are of another kind: they are found no more, and leave the cache in their time.
 TEST_F(LastSchemas, ResultsOfTheThirdAreGivenUp) {

@@ -61,15 +61,15 @@ TEST(WorkerProtocol, AssessmentsComeBackAsTheyWere) {
     EXPECT_EQ(back.sectors[0].candidates[1].inventory, some_digest);
 
     Assessments answer;
-    answer.sectors = {{reuse::Verdict::near_hit, 1, 0.1f, 0, "why"},
-                      {reuse::Verdict::rebake, 0, 0, 0.25f, "because"}};
+    answer.sectors = {{reuse::Verdict::near_hit, 1, 0.1f, 0, "why", "w"},
+                      {reuse::Verdict::rebake, 0, 0, 0.25f, "because", "be"}};
     answer.changes = {{"a tree moved", {{1, 2, 3}, {4, 5, 6.5f}}}};
     answer.warnings = {"lost"};
     const auto given = std::get<Assessments>(decode_answer(encode(Answer{9, answer})).value().what);
     ASSERT_EQ(given.sectors.size(), 2u);
     EXPECT_EQ(std::tuple(given.sectors[0].verdict, given.sectors[0].candidate, given.sectors[0].bound,
-                         given.sectors[0].reason),
-              std::tuple(reuse::Verdict::near_hit, 1u, 0.1f, "why"));
+                         given.sectors[0].reason, given.sectors[0].cause),
+              std::tuple(reuse::Verdict::near_hit, 1u, 0.1f, "why", "w"));
     EXPECT_EQ(given.sectors[1].share, 0.25f);
     ASSERT_EQ(given.changes.size(), 1u);
     EXPECT_EQ(given.changes[0].bounds.high, glm::vec3(4, 5, 6.5f));
@@ -85,8 +85,18 @@ TEST(WorkerProtocol, AnswersComeBackAsTheyWere) {
         EXPECT_EQ(answer.value().id, 9u);
         return answer->what;
     };
-    const auto baked = std::get<SectorResult>(round(SectorResult{
-        {some_digest, some_digest, some_digest}, 15000, 12, 70, 1LL << 40, {"a wall"}, 0.3, 0.1f}));
+    const auto baked = std::get<SectorResult>(round(SectorResult{{some_digest, some_digest, some_digest},
+                                                                 15000,
+                                                                 12,
+                                                                 70,
+                                                                 1LL << 40,
+                                                                 {"a wall"},
+                                                                 0.3,
+                                                                 0.1f,
+                                                                 {1, 2, 3, 4, 5, 6, 0.1, 0.2, 0.3, 7},
+                                                                 {0.1, 0.2, 0.3, 0.4, 0.5}}));
+    EXPECT_EQ(baked.numbers, (SectorNumbers{1, 2, 3, 4, 5, 6, 0.1, 0.2, 0.3, 7}));
+    EXPECT_EQ(baked.stages, (bake::StageSeconds{0.1, 0.2, 0.3, 0.4, 0.5}));
     EXPECT_EQ(std::tuple(baked.footprint_bytes, baked.seconds, baked.bound), std::tuple(12, 0.3, 0.1f));
     EXPECT_EQ(std::tuple(baked.blobs.file, baked.file_bytes, baked.probes, baked.rays),
               std::tuple(some_digest, 15000, 70, 1LL << 40));
@@ -119,7 +129,8 @@ TEST(WorkerProtocol, ASentenceThatIsNotUtf8IsStillALine) {
 
 TEST(WorkerProtocol, GarbageIsNothing) {
     const std::string request = encode(Request{UINT64_MAX, bake_request()}),
-                      answer = encode(Answer{9, SectorResult{{some_digest, {}, {}}, 1, 2, 3, 4, {}}});
+                      answer = encode(
+                          Answer{9, SectorResult{{some_digest, {}, {}}, 1, 2, 3, 4, {}, 0, 0, {}, {}}});
     for (std::size_t size = 0; size < request.size(); ++size)
         EXPECT_FALSE(decode_request(request.substr(0, size))) << size;
     for (std::size_t size = 0; size < answer.size(); ++size)
@@ -136,7 +147,8 @@ TEST(WorkerProtocol, GarbageIsNothing) {
 
 TEST(WorkerProtocol, NumbersOutOfRangeAreNothing) {
     const std::string request = encode(Request{UINT64_MAX, bake_request()}),
-                      answer = encode(Answer{9, SectorResult{{some_digest, {}, {}}, 1, 2, 3, 4, {}}});
+                      answer = encode(
+                          Answer{9, SectorResult{{some_digest, {}, {}}, 1, 2, 3, 4, {}, 0, 0, {}, {}}});
     for (const char* bad : {"4294967296", "2147483648", "1.5", "\"1\"", "null", "1e30", "true"})
         EXPECT_FALSE(decode_request(replaced(request, R"("i":-16384)", std::string(R"("i":)") + bad))) << bad;
     for (const char* bad : {"-1", "4294967296", "17.5", "1e30"})
