@@ -3,6 +3,7 @@
 #include "client/number_text.h"
 #include "client/plan_picture.h"
 #include "format/cli/report.h"
+#include "format/image/png_file.h"
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
@@ -11,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 namespace drtv::client {
 namespace {
@@ -122,7 +125,18 @@ void print_text(const v1::Plan& plan) {
 
 cli::Result<cli::ExitCode> run_plan(ServerConnection& connection,
                                     const SubmitOptions& options,
-                                    const std::string& picture) {
+                                    const PlanPicture& picture) {
+    std::optional<image::Underlay> under;
+    if (!picture.path.empty()) {
+        if (auto target = image::check_png_target(picture.path); !target)
+            return tl::unexpected(target.error());
+    }
+    if (!picture.under.empty()) {
+        auto read = image::Underlay::read(picture.under);
+        if (!read)
+            return tl::unexpected(read.error());
+        under = std::move(*read);
+    }
     const auto prepared = prepare_job(connection, options);
     if (!prepared)
         return tl::unexpected(prepared.error());
@@ -138,12 +152,12 @@ cli::Result<cli::ExitCode> run_plan(ServerConnection& connection,
         print_json(plan);
     else
         print_text(plan);
-    if (picture.empty())
+    if (picture.path.empty())
         return cli::exit_done;
-    if (auto written = write_plan_picture(plan, picture); !written)
+    if (auto written = write_plan_picture(plan, picture.path, under ? &*under : nullptr); !written)
         return tl::unexpected(written.error());
     if (!connection.options.json)
-        std::printf("%s: green hits, yellow near hits, red to bake, blue what changed\n", picture.c_str());
+        std::printf("%s: the plan from above\n", picture.path.c_str());
     return cli::exit_done;
 }
 

@@ -8,9 +8,14 @@
 
 namespace drtv::client {
 
-// Prints the plan; unless `picture` is empty, a PNG is written there too. Gives the exit status.
+struct PlanPicture {
+    std::string path;   // of the PNG to write; empty: none
+    std::string under;  // of a picture that lies under the plan; empty: none
+};
+
+// Prints the plan, and draws it where that is asked for. Gives the exit status.
 cli::Result<cli::ExitCode> run_plan(ServerConnection& connection,
                                     const SubmitOptions& options,
-                                    const std::string& picture);
+                                    const PlanPicture& picture);
 
 }  // namespace drtv::client

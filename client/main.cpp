@@ -27,7 +27,7 @@ namespace {
 struct Arguments {
     ConnectionOptions connection;
     SubmitOptions submit;
-    std::string picture;
+    PlanPicture picture;
     std::string job;
     std::string folder;
     bool clear = false;
@@ -89,7 +89,13 @@ void add_map_commands(CLI::App& app, Arguments& to) {
     CLI::App* plan = app.add_subcommand("plan", "Say what would be baked, and why, without baking");
     add_map_options(*submit, to.submit);
     add_map_options(*plan, to.submit);
-    plan->add_option("--png", to.picture, "Draw the plan from above to this file");
+    CLI::Option* png = plan->add_option("--png", to.picture.path, "Draw the plan from above to this file")
+                           ->type_name("FILE.png");
+    plan->add_option("--under",
+                     to.picture.under,
+                     "With --png: a picture to lie under the plan: what bakerd render --top makes")
+        ->needs(png)
+        ->type_name("FILE.png");
     submit->add_flag("--yes", to.submit.yes, "Bake more than 2,500 sectors without a question");
     submit->add_flag("--wait", to.submit.wait, "Show progress until the job ends");
     submit->add_option("--pull", to.submit.pull_folder, "Wait, then write the sector files to this folder");

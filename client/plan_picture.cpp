@@ -1,14 +1,23 @@
 #include "client/plan_picture.h"
 
-#include "client/canvas.h"
-#include "format/folder/whole_file.h"
+#include "client/number_text.h"
+#include "format/cli/report.h"
+#include "format/image/map_sheet.h"
+#include "format/image/png_file.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace drtv::client {
 namespace {
+
+using image::Colour;
+using image::PixelRect;
 
 constexpr Colour background = {28, 30, 34};
 constexpr Colour hit = {70, 120, 80};
@@ -16,13 +25,10 @@ constexpr Colour near_hit = {230, 190, 60};
 constexpr Colour rebake = {205, 70, 60};
 constexpr Colour change = {80, 170, 255};
 
-constexpr double sector_m = 64;
-
-// In pixels.
-constexpr int max_side = 2048;
-constexpr int max_sector = 32;
-constexpr int min_gapped_sector = 8;  // smaller ones touch
-constexpr int min_mark = 5;           // of something that changed
+constexpr double max_sector_px = 192;
+constexpr int min_gapped_sector_px = 8;  // smaller ones touch
+constexpr int min_mark_px = 5;           // of something that changed
+constexpr float over_picture = 0.45f;    // how much of a colour covers what lies under it
 
 Colour colour_of(v1::PlannedSector::Verdict verdict) {
     if (verdict == v1::PlannedSector::HIT)
@@ -30,86 +36,88 @@ Colour colour_of(v1::PlannedSector::Verdict verdict) {
     return verdict == v1::PlannedSector::NEAR_HIT ? near_hit : rebake;
 }
 
-// The sectors of a plan, and how many pixels each of them has along its side.
-struct Layout {
-    int west;
-    int east;
-    int south;
-    int north;
-    int side;
-
-    [[nodiscard]] int columns() const { return east - west + 1; }
-    [[nodiscard]] int rows() const { return north - south + 1; }
-    [[nodiscard]] double per_metre() const { return side / sector_m; }
-
-    // In pixels, from the top left.
-    [[nodiscard]] double x_of(double x_m) const {
-        const double west_m = west * sector_m;
-        return (x_m - west_m) * per_metre();
-    }
-    [[nodiscard]] double y_of(double y_m) const {
-        const double north_m = (north + 1) * sector_m;
-        return (north_m - y_m) * per_metre();
-    }
-};
-
-// REQUIRES: the plan has sectors.
-Layout layout_of(const v1::Plan& plan) {
-    const v1::PlannedSector& first = plan.sectors(0);
-    Layout layout{first.i(), first.i(), first.j(), first.j(), 0};
-    for (const v1::PlannedSector& sector : plan.sectors()) {
-        layout.west = std::min(layout.west, sector.i());
-        layout.east = std::max(layout.east, sector.i());
-        layout.south = std::min(layout.south, sector.j());
-        layout.north = std::max(layout.north, sector.j());
-    }
-    const int longest = std::max(layout.columns(), layout.rows());
-    layout.side = std::clamp(max_side / longest, 1, max_sector);
-    return layout;
+image::MapExtent extent_of(const v1::Plan& plan) {
+    std::vector<std::array<std::int32_t, 2>> sectors;
+    for (const v1::PlannedSector& sector : plan.sectors())
+        sectors.push_back({sector.i(), sector.j()});
+    const image::MapExtent usual = image::measure(sectors, 0);
+    return image::measure(sectors, std::max(usual.metres_per_pixel, image::map_sector_m / max_sector_px));
 }
 
-PixelRect place_of(const v1::PlannedSector& sector, const Layout& layout) {
-    const int x = (sector.i() - layout.west) * layout.side;
-    const int y = (layout.north - sector.j()) * layout.side;
-    const int gap = layout.side >= min_gapped_sector ? 1 : 0;
-    const int filled = layout.side - gap;
-    return {x, y, x + filled, y + filled};
-}
-
-int pixel_before(double place) {
+int pixel(double place) {
     return static_cast<int>(std::floor(place));
 }
 
-int pixel_after(double place) {
-    return static_cast<int>(std::ceil(place));
+PixelRect place_of(const v1::PlannedSector& sector, const image::MapExtent& extent) {
+    const int x0 = pixel(extent.x_px(sector.i() * image::map_sector_m));
+    const int x1 = pixel(extent.x_px((sector.i() + 1) * image::map_sector_m));
+    const int y0 = pixel(extent.y_px((sector.j() + 1) * image::map_sector_m));
+    const int y1 = pixel(extent.y_px(sector.j() * image::map_sector_m));
+    const int gap = x1 - x0 >= min_gapped_sector_px ? 1 : 0;
+    return {x0, y0, std::max(x1 - gap, x0 + 1), std::max(y1 - gap, y0 + 1)};
 }
 
 // Large enough to be seen.
-PixelRect mark_of(const v1::MapChange& changed, const Layout& layout) {
-    const int x0 = pixel_before(layout.x_of(changed.x0()));
-    const int x1 = pixel_after(layout.x_of(changed.x1()));
-    const int y0 = pixel_before(layout.y_of(changed.y1()));
-    const int y1 = pixel_after(layout.y_of(changed.y0()));
-    const int wider = std::max(0, min_mark - (x1 - x0)) / 2;
-    const int taller = std::max(0, min_mark - (y1 - y0)) / 2;
+PixelRect mark_of(const v1::MapChange& changed, const image::MapExtent& extent) {
+    const int x0 = pixel(extent.x_px(changed.x0()));
+    const int x1 = pixel(extent.x_px(changed.x1())) + 1;
+    const int y0 = pixel(extent.y_px(changed.y1()));
+    const int y1 = pixel(extent.y_px(changed.y0())) + 1;
+    const int wider = (std::max(0, min_mark_px - (x1 - x0)) + 1) / 2;
+    const int taller = (std::max(0, min_mark_px - (y1 - y0)) + 1) / 2;
     return {x0 - wider, y0 - taller, x1 + wider, y1 + taller};
+}
+
+void draw_under(const image::Underlay& under, const image::MapExtent& extent, image::Image& map) {
+    for (std::size_t y = 0; y < map.height; ++y) {
+        for (std::size_t x = 0; x < map.width; ++x) {
+            if (const std::uint8_t* lying = under.at(extent.x_m(x), extent.y_m(y)))
+                std::copy_n(lying, 3, map.at(x, y));
+        }
+    }
+}
+
+std::int64_t count(const v1::Plan& plan, v1::PlannedSector::Verdict verdict) {
+    return std::ranges::count(plan.sectors(), verdict, &v1::PlannedSector::verdict);
+}
+
+image::SheetText text_of(const v1::Plan& plan) {
+    const auto entry = [&](v1::PlannedSector::Verdict verdict, const char* what) {
+        return image::LegendEntry{colour_of(verdict),
+                                  fmt::format("{} ({})", what, with_thousands(count(plan, verdict)))};
+    };
+    image::SheetText text{"what a bake would do, by sector",
+                          {entry(v1::PlannedSector::HIT, "in the cache"),
+                           entry(v1::PlannedSector::NEAR_HIT, "nearly the same"),
+                           entry(v1::PlannedSector::REBAKE, "to bake")}};
+    if (!plan.changes().empty())
+        text.legend.push_back(
+            {change, fmt::format("frame: changed ({})", with_thousands(plan.changes_size()))});
+    return text;
 }
 
 }  // namespace
 
-cli::Result<void> write_plan_picture(const v1::Plan& plan, const std::string& path) {
+cli::Result<void> write_plan_picture(const v1::Plan& plan,
+                                     const std::string& path,
+                                     const image::Underlay* under) {
     if (plan.sectors().empty())
         return cli::fail(cli::exit_invalid, "the plan has no sectors, so there is nothing to draw");
-    const Layout layout = layout_of(plan);
-    Canvas canvas(layout.columns() * layout.side, layout.rows() * layout.side, background);
-    for (const v1::PlannedSector& sector : plan.sectors())
-        canvas.fill(place_of(sector, layout), colour_of(sector.verdict()));
+    const image::MapExtent extent = extent_of(plan);
+    image::Image map(extent.width, extent.height);
+    const int width = static_cast<int>(map.width);
+    const int height = static_cast<int>(map.height);
+    image::fill(map, {0, 0, width, height}, background);
+    if (under != nullptr)
+        draw_under(*under, extent, map);
+    for (const v1::PlannedSector& sector : plan.sectors()) {
+        const float share = under != nullptr ? over_picture : 1;
+        image::blend(map, place_of(sector, extent), colour_of(sector.verdict()), share);
+    }
     for (const v1::MapChange& changed : plan.changes())
-        canvas.frame(mark_of(changed, layout), change);
-    const auto png = canvas.png();
-    if (!png)
-        return tl::unexpected(png.error());
-    return folder::write_whole(path, *png);
+        image::frame(map, mark_of(changed, extent), change);
+    const image::MapSheet sheet = image::framed(map, extent, text_of(plan));
+    return image::write_png_file(path, sheet.image, {sheet.world});
 }
 
 }  // namespace drtv::client

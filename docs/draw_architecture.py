@@ -41,7 +41,8 @@ ROOMS = {
     "format/cli": (490, 660, "exit codes, messages"),
     "format/spelling": (490, 750, "did you mean"),
     "format/folder": (680, 750, "manifest, whole files"),
-    "format/kit": (680, 570, "folders, PNG"),
+    "format/image": (300, 750, "PNG, map sheets"),
+    "format/kit": (680, 570, "folders, light"),
     "format/tool": (680, 660, "drtv"),
     "bakerd/picture": (985, 570, "relit and path-traced"),
 }

@@ -42,8 +42,9 @@ ROOMS = {
     "format/spelling": "",
     "format/cli": "format/spelling drtv/version.h CLI11 nlohmann_json tl-expected",
     "format/folder": "format/cli nlohmann_json OpenSSL tl-expected",
-    "format/kit": "format/folder format/cli format/light format/runtime format CLI11 stb tl-expected",
-    "format/tool": "format/kit format/folder format/cli format/runtime format CLI11 nlohmann_json tl-expected threads",
+    "format/image": "format/folder format/cli stb tl-expected",
+    "format/kit": "format/folder format/cli format/light format/runtime format CLI11 tl-expected",
+    "format/tool": "format/kit format/image format/folder format/cli format/runtime format CLI11 nlohmann_json tl-expected threads",
     "placement": "drtv/conventions.h GLM CGAL fmt tl-expected",
     "proto": "gRPC protobuf",
     "settings": "fmt tl-expected",
@@ -57,10 +58,10 @@ ROOMS = {
     "bakerd/worker": "bakerd/reuse bakerd/bake bakerd/trace bakerd/store bakerd/map settings TBB nlohmann_json spdlog fmt tl-expected",
     "bakerd/farm": "bakerd/worker bakerd/reuse bakerd/bake bakerd/store bakerd/map settings SQLite spdlog fmt tl-expected",
     "bakerd/service": "bakerd/farm bakerd/reuse bakerd/store bakerd/map map_files drtv/version.h settings/message settings proto gRPC protobuf fmt tl-expected",
-    "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map map_files format/kit format/folder format/cli format/light format/runtime format GLM TBB CLI11 stb fmt tl-expected",
+    "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map map_files format/kit format/image format/folder format/cli format/light format/runtime format GLM TBB CLI11 fmt tl-expected",
     # main wires the rooms together and asks trace whether this CPU will do.
     "bakerd": "bakerd/service bakerd/farm bakerd/bake bakerd/picture bakerd/worker bakerd/trace format/cli CLI11 spdlog",
-    "client": "drtv/version.h settings/message settings map_files proto format/cli format/folder format/spelling CLI11 nlohmann_json stb gRPC fmt tl-expected",
+    "client": "drtv/version.h settings/message settings map_files proto format/cli format/folder format/image format/spelling CLI11 nlohmann_json gRPC fmt tl-expected",
 }
 # A game may link these, so nothing in them may rest on a room under another licence.
 MIT_ROOMS = ("format", "proto")

@@ -1,4 +1,3 @@
-#include "bakerd/picture/caption.h"
 #include "bakerd/picture/compare.h"
 #include "bakerd/picture/draw.h"
 #include "bakerd/picture/film.h"
@@ -8,9 +7,10 @@
 #include "bakerd/picture/shot.h"
 #include "bakerd/picture/view_arguments.h"
 
+#include "format/cli/number_list.h"
 #include "format/cli/report.h"
-#include "format/kit/files.h"
-#include "format/kit/number_list.h"
+#include "format/image/canvas.h"
+#include "format/image/png_file.h"
 #include "format/kit/progress_bar.h"
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ class Rendering {
         if (auto done = read_exposure(); !done)
             return done;
         if (!request_.out.empty()) {
-            if (auto target = kit::check_png_target(request_.out); !target)
+            if (auto target = image::check_png_target(request_.out); !target)
                 return target;
         }
         auto shot = Shot::open(request_);
@@ -71,7 +71,7 @@ class Rendering {
         if (text == "noon" || text == "auto")
             return {};
         constexpr double most = 128;
-        const auto stops = kit::number_list(text, 1);
+        const auto stops = cli::number_list(text, 1);
         if (!stops || std::abs(stops->front()) > most)
             return cli::fail(
                 cli::exit_usage,
@@ -115,7 +115,7 @@ class Rendering {
         return {};
     }
 
-    [[nodiscard]] kit::Image draw_hour(const Hour& hour, kit::ProgressBar& bar, std::size_t done) {
+    [[nodiscard]] image::Image draw_hour(const Hour& hour, kit::ProgressBar& bar, std::size_t done) {
         const float ev = ev_ ? *ev_ : ev_of(hour);
         if (!ev_ || shown_evs_.empty())
             shown_evs_.push_back(ev);
@@ -154,7 +154,7 @@ class Rendering {
     }
 
     // Pictures side by side, as near to a square as they go.
-    [[nodiscard]] kit::Image sheet() {
+    [[nodiscard]] image::Image sheet() {
         const Size size = shot_->camera().size();
         const std::size_t steps = draw_steps(shot_->show(), size);
         kit::ProgressBar bar("rows", steps * hours_.size());
@@ -162,30 +162,30 @@ class Rendering {
             return draw_hour(hours_.front(), bar, 0);
         const std::size_t columns = sheet_columns();
         const std::size_t rows = (hours_.size() + columns - 1) / columns;
-        kit::Image sheet(columns * size.width, rows * size.height);
+        image::Image sheet(columns * size.width, rows * size.height);
         for (std::size_t n = 0; n < hours_.size(); ++n) {
-            kit::Image picture = draw_hour(hours_[n], bar, n * steps);
+            image::Image picture = draw_hour(hours_[n], bar, n * steps);
             const std::size_t x = n % columns * size.width;
             const std::size_t y = n / columns * size.height;
             for (std::size_t row = 0; row < size.height; ++row)
                 std::copy_n(picture.at(0, row), 3 * size.width, sheet.at(x, y + row));
-            write_caption(sheet, x + caption_margin, y + caption_margin, hours_[n].time);
+            image::write_caption(sheet,
+                                 static_cast<int>(x + caption_margin),
+                                 static_cast<int>(y + caption_margin),
+                                 hours_[n].time);
         }
         return sheet;
     }
 
-    cli::Result<void> write(const kit::Image& image) const {
-        std::vector<kit::PngText> texts;
+    cli::Result<void> write(const image::Image& image) const {
+        std::vector<image::PngText> texts;
         if (request_.top && hours_.size() == 1 && !request_.compare) {
             const trace::WorldRectangle& world = shot_->world();
             texts.push_back(
-                {kit::world_rectangle_key,
+                {image::world_rectangle_key,
                  fmt::format("{},{},{},{}", world.low.x, world.low.y, world.high.x, world.high.y)});
         }
-        const auto written = kit::encode_png(image, texts).and_then([&](const kit::FileBytes& png) {
-            return kit::write_png_file(request_.out, png);
-        });
-        if (!written)
+        if (auto written = image::write_png_file(request_.out, image, texts); !written)
             return written;
         fmt::print("{}: {} x {} pixels{}\n", request_.out, image.width, image.height, told());
         return {};

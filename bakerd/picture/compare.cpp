@@ -195,7 +195,7 @@ class Comparing {
     const PathLight path_light_;
     const bake::SampleTable half_;  // of the paths of a pixel
     TrueProbes true_probes_;
-    kit::Image picture_;
+    image::Image picture_;
     kit::ProgressBar bar_;
 };
 

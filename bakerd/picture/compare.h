@@ -4,7 +4,7 @@
 
 #include "bakerd/picture/moment.h"
 #include "bakerd/picture/shot.h"
-#include "format/kit/png.h"
+#include "format/image/png.h"
 
 #include <cstdint>
 #include <string>
@@ -17,7 +17,7 @@ struct CompareSettings {
 
 // What is relit, what is true, and what would be relit if the probes' colours were true, from left to right.
 struct Comparison {
-    kit::Image picture;
+    image::Image picture;
     std::string table;  // lines of text
 };
 

@@ -31,14 +31,14 @@ class Drawing {
           progress_(progress),
           image_(size.width, size.height) {}
 
-    kit::Image run() {
+    image::Image run() {
         for_each_row([&](std::size_t y) {
             for (std::size_t x = 0; x < size_.width; ++x)
                 put_pixel(image_, x, y, shown(middle(x, y)));
         });
         if (!painter_.is_light())
             return std::move(image_);
-        kit::Image smooth = image_;
+        image::Image smooth = image_;
         for_each_row([&](std::size_t y) {
             for (std::size_t x = 0; x < size_.width; ++x) {
                 if (is_edge(x, y))
@@ -90,7 +90,7 @@ class Drawing {
     const float exposure_;
     const Progress& progress_;
     std::atomic<std::size_t> done_ = 0;
-    kit::Image image_;
+    image::Image image_;
 };
 
 }  // namespace
@@ -99,7 +99,7 @@ std::size_t draw_steps(Show show, Size size) {
     return is_light(show) ? 2 * size.height : size.height;
 }
 
-kit::Image draw(const Painter& painter, Size size, float exposure, const Progress& progress) {
+image::Image draw(const Painter& painter, Size size, float exposure, const Progress& progress) {
     return Drawing(painter, size, exposure, progress).run();
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bakerd/picture/painter.h"
-#include "format/kit/png.h"
+#include "format/image/png.h"
 
 #include <functional>
 #include <optional>
@@ -17,7 +17,7 @@ using Progress = std::function<void(std::size_t done)>;
 
 // One ray through the middle of each pixel; where the picture shows light, four more where a pixel differs
 // from its neighbours. The same bytes for any number of threads. `exposure`: of light.
-[[nodiscard]] kit::Image draw(const Painter& painter, Size size, float exposure, const Progress& progress);
+[[nodiscard]] image::Image draw(const Painter& painter, Size size, float exposure, const Progress& progress);
 
 // Whether one of a grid of rays meets a surface.
 [[nodiscard]] bool sees_anything(const Camera& camera, const trace::Scene& scene);

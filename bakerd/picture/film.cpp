@@ -28,7 +28,7 @@ glm::vec3 filmic(const glm::vec3& exposed) {
     return {bright.x < 1 ? bright.x : 1, bright.y < 1 ? bright.y : 1, bright.z < 1 ? bright.z : 1};
 }
 
-void put_pixel(kit::Image& image, std::size_t x, std::size_t y, const glm::vec3& linear) {
+void put_pixel(image::Image& image, std::size_t x, std::size_t y, const glm::vec3& linear) {
     std::uint8_t* pixel = image.at(x, y);
     for (glm::length_t c = 0; c < 3; ++c)
         pixel[c] = kit::encode_srgb(linear[c]);

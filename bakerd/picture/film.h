@@ -1,7 +1,7 @@
 // From radiance to the bytes of a picture.
 #pragma once
 
-#include "format/kit/png.h"
+#include "format/image/png.h"
 
 #include <glm/vec3.hpp>
 
@@ -17,7 +17,7 @@ namespace drtv::picture {
 [[nodiscard]] glm::vec3 filmic(const glm::vec3& exposed);
 
 // Writes a pixel of linear colour.
-void put_pixel(kit::Image& image, std::size_t x, std::size_t y, const glm::vec3& linear);
+void put_pixel(image::Image& image, std::size_t x, std::size_t y, const glm::vec3& linear);
 
 // The EV at which surfaces of this brightness (brightness_log2 in draw.h) come out well; in quarters, so that
 // it can be said again on the command line.

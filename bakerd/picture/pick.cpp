@@ -2,8 +2,8 @@
 
 #include "bakerd/picture/painter.h"
 #include "bakerd/trace/device.h"
+#include "format/cli/number_list.h"
 #include "format/kit/ambient_json.h"
-#include "format/kit/number_list.h"
 
 #include <fmt/format.h>
 
@@ -37,7 +37,7 @@ cli::Result<std::string> picked(const Shot& shot,
     const trace::FloatMode float_mode;
     const Camera& camera = shot.camera();
     const Size size = camera.size();
-    const auto numbers = kit::number_list(pixel, 2);
+    const auto numbers = cli::number_list(pixel, 2);
     const auto is_within = [](double n, std::size_t pixels) {
         return n >= 0 && n < static_cast<double>(pixels) && n == std::floor(n);
     };

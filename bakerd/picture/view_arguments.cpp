@@ -1,6 +1,6 @@
 #include "bakerd/picture/view_arguments.h"
 
-#include "format/kit/number_list.h"
+#include "format/cli/number_list.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -25,7 +25,7 @@ bool are_in_world(const std::vector<double>& metres) {
 }
 
 cli::Result<glm::vec3> read_place(const std::string& text, const char* option) {
-    const auto numbers = kit::number_list(text, 3);
+    const auto numbers = cli::number_list(text, 3);
     if (!numbers || !are_in_world(*numbers))
         return cli::fail(cli::exit_usage,
                          fmt::format("render: {} takes x,y,z in metres, not \"{}\"", option, text));
@@ -69,7 +69,7 @@ cli::Result<std::optional<View>> read_view(const RenderRequest& request) {
 cli::Result<std::optional<trace::WorldRectangle>> read_region(const std::optional<std::string>& text) {
     if (!text)
         return std::optional<trace::WorldRectangle>();
-    const auto n = kit::number_list(*text, 4);
+    const auto n = cli::number_list(*text, 4);
     const bool fits =
         n && are_in_world(*n) && (*n)[2] - (*n)[0] >= min_side_m && (*n)[3] - (*n)[1] >= min_side_m;
     if (!fits)

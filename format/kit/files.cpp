@@ -42,10 +42,6 @@ tl::unexpected<cli::Failure> cannot_read(const std::string& path) {
     return cli::fail(cli::exit_unreadable, "cannot read " + path + ": " + std::strerror(errno));
 }
 
-tl::unexpected<cli::Failure> cannot_write(const std::string& path, const std::string& why) {
-    return cli::fail(cli::exit_unreadable, "cannot write " + path + ": " + why);
-}
-
 }  // namespace
 
 cli::Result<FileBytes> read_file(const std::string& path) {
@@ -111,27 +107,6 @@ std::optional<std::pair<std::int32_t, std::int32_t>> sector_of_file(const std::s
 
 cli::Result<void> write_file(const std::string& path, const FileBytes& bytes) {
     return folder::write_whole(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
-
-cli::Result<void> check_png_target(const std::string& path) {
-    constexpr std::array<std::uint8_t, 8> signature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-    std::error_code code;
-    if (fs::is_directory(path, code))
-        return cannot_write(path, "it is a folder");
-    const fs::path folder = fs::absolute(path, code).parent_path();
-    if (!fs::is_directory(folder, code))
-        return cannot_write(path, "there is no folder " + folder.string());
-    if (!fs::is_regular_file(path, code) || fs::file_size(path, code) == 0)
-        return {};
-    std::array<std::uint8_t, signature.size()> head{};
-    const std::optional<std::size_t> size = read_head(path, head);
-    if (size && (size != head.size() || head != signature))
-        return cli::fail(cli::exit_unreadable, path + " is there and no PNG file: it is not replaced");
-    return {};
-}
-
-cli::Result<void> write_png_file(const std::string& path, const FileBytes& png) {
-    return check_png_target(path).and_then([&] { return write_file(path, png); });
 }
 
 std::string format_version(std::span<const std::uint8_t> bytes) {

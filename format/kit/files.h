@@ -32,12 +32,6 @@ using FilePaths = std::vector<std::string>;
 // there and no regular file.
 [[nodiscard]] cli::Result<void> write_file(const std::string& path, const FileBytes& bytes);
 
-// The same of a picture. What is there and no PNG file is not replaced.
-[[nodiscard]] cli::Result<void> write_png_file(const std::string& path, const FileBytes& png);
-
-// Fails where a picture could not be written there; asked before it is made.
-[[nodiscard]] cli::Result<void> check_png_target(const std::string& path);
-
 // "1.0" from the header of a sector file. REQUIRES: the file was read without error.
 [[nodiscard]] std::string format_version(std::span<const std::uint8_t> bytes);
 

@@ -1,7 +1,7 @@
 #include "light_request.h"
 
+#include "cli/number_list.h"
 #include "files.h"
-#include "number_list.h"
 
 #include <algorithm>
 #include <array>
@@ -38,7 +38,7 @@ class Reader {
                                       const char* form) const {
         if (!text)
             return Numbers();
-        const auto read = number_list(*text, count);
+        const auto read = cli::number_list(*text, count);
         if (!read)
             return refuse(std::string(option) + " takes " + form + ", not \"" + *text + "\"");
         return *read;
@@ -82,18 +82,18 @@ class Reader {
             return tl::unexpected(colours.error());
         Float3 to_sun{};
         if (!direction->empty()) {
-            to_sun = float3_of(direction->data());
+            to_sun = cli::float3_of(direction->data());
             if (to_sun == Float3{})
                 return refuse("--sun-direction has no length");
         }
         if (!sun->empty())
-            light.sun = {float3_of(sun->data()), to_sun};
+            light.sun = {cli::float3_of(sun->data()), to_sun};
         if (!sky->empty())
-            light.sky = constant_sky(float3_of(sky->data()));
+            light.sky = constant_sky(cli::float3_of(sky->data()));
         if (!colours->empty()) {
             const double* numbers = colours->data();
-            light.sky =
-                gradient_sky({float3_of(numbers), float3_of(numbers + 3), float3_of(numbers + 6)}, to_sun);
+            light.sky = gradient_sky(
+                {cli::float3_of(numbers), cli::float3_of(numbers + 3), cli::float3_of(numbers + 6)}, to_sun);
         }
         return {};
     }
@@ -126,7 +126,7 @@ class Reader {
             const Numbers colour(numbers->begin() + 3, numbers->end());
             if (auto checked = none_below_zero(colour, "--light"); !checked)
                 return checked;
-            lamps.push_back({{(*numbers)[0], (*numbers)[1], (*numbers)[2]}, float3_of(colour.data())});
+            lamps.push_back({{(*numbers)[0], (*numbers)[1], (*numbers)[2]}, cli::float3_of(colour.data())});
         }
         return {};
     }
@@ -135,13 +135,13 @@ class Reader {
         for (const std::string& text : request_.groups) {
             const std::size_t equals = text.rfind('=');
             const auto numbers =
-                equals == std::string::npos ? std::nullopt : number_list(text.substr(equals + 1), 3);
+                equals == std::string::npos ? std::nullopt : cli::number_list(text.substr(equals + 1), 3);
             if (!numbers || equals == 0)
                 return refuse("--group takes NAME=r,g,b, not \"" + text + "\"");
             if (auto checked = none_below_zero(*numbers, "--group"); !checked)
                 return checked;
             to.names.push_back(text.substr(0, equals));
-            to.groups.push_back({to.names.back(), float3_of(numbers->data())});
+            to.groups.push_back({to.names.back(), cli::float3_of(numbers->data())});
         }
         to.light.groups = to.groups;
         return {};

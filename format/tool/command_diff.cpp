@@ -1,10 +1,13 @@
+#include "cli/report.h"
 #include "commands.h"
 #include "diff_report.h"
+#include "image/png_file.h"
 #include "kit/files.h"
 #include "region_picture.h"
 #include "sector_diff.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -61,7 +64,7 @@ cli::Result<Side> files_of(const std::string& path) {
 }
 
 void draw_dots(const Sector& first, const Sector& second, const SectorDiff& diff, RegionPicture& picture) {
-    picture.add(second, [&](std::size_t p, float) {
+    picture.add(second, [&](const Sector&, std::size_t p, float) {
         return diff.match[p] == no_match ? added_colour : change_colour(diff.relit[p]);
     });
     for (const std::size_t p : diff.removed) {
@@ -99,7 +102,7 @@ cli::Result<void> add_single(const std::string& file, const Float3& colour, Regi
     const auto sector = kit::load_sector(file);
     if (!sector)
         return tl::unexpected(sector.error());
-    picture.add(*sector, [&](std::size_t, float) { return colour; });
+    picture.add(*sector, [&](const Sector&, std::size_t, float) { return colour; });
     return {};
 }
 
@@ -124,26 +127,37 @@ cli::Result<void> compare_sides(const Side& first, const Side& second, Compariso
     return {};
 }
 
-cli::Result<void> write_picture(const RegionPicture& picture, const DiffRequest& request) {
-    const auto written =
-        draw(picture, request.metres_per_pixel)
-            .and_then([](const kit::Image& image) { return kit::encode_png(image); })
-            .and_then([&](const kit::FileBytes& png) { return kit::write_png_file(*request.png, png); });
-    if (!written || request.json)
-        return written;
-    std::printf(
-        "%s: grey is equal; green changed by %g or less of a white sky, yellow by %g, red by %g or more; "
-        "blue is new, magenta gone\n",
-        request.png->c_str(),
-        min_shown_change,
-        std::sqrt(min_shown_change * red_change),
-        red_change);
-    return {};
+std::string percent_text(double share) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.2g %% of a white sky", 100 * share);
+    return text.data();
+}
+
+cli::Result<void> write_picture(RegionPicture& picture, const DiffRequest& request) {
+    picture.title = "change of relit ambient light";
+    picture.legend = {{same_colour, "equal"},
+                      {change_colour(min_shown_change), percent_text(min_shown_change) + " or less"},
+                      {change_colour(std::sqrt(min_shown_change * red_change)),
+                       percent_text(std::sqrt(min_shown_change * red_change))},
+                      {change_colour(red_change), percent_text(red_change) + " or more"},
+                      {added_colour, "new"},
+                      {removed_colour, "gone"}};
+    const auto [sheet, note] = draw(picture, request.metres_per_pixel);
+    if (!note.empty())
+        cli::note(note);
+    auto written = image::write_png_file(*request.png, sheet.image, {sheet.world});
+    if (written && !request.json)
+        std::printf("%s: %zu x %zu pixels\n", request.png->c_str(), sheet.image.width, sheet.image.height);
+    return written;
 }
 
 }  // namespace
 
 cli::Result<cli::ExitCode> run_diff(const DiffRequest& request) {
+    if (request.png) {
+        if (auto target = image::check_png_target(*request.png); !target)
+            return tl::unexpected(target.error());
+    }
     const auto first = files_of(request.first);
     if (!first)
         return tl::unexpected(first.error());

@@ -1,80 +1,81 @@
+#include "cli/report.h"
 #include "commands.h"
-#include "dot_colour.h"
+#include "image/png_file.h"
 #include "kit/files.h"
 #include "region_picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 namespace drtv::tool {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, DotQuantity>, 4> quantities = {
-    {{"relit", DotQuantity::relit},
-     {"sky", DotQuantity::sky},
-     {"errors", DotQuantity::errors},
-     {"back_hits", DotQuantity::back_hits}}};
+std::string count_of(std::size_t count, const std::string& word) {
+    return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
+}
+
+cli::Result<std::optional<image::Underlay>> read_underlay(const PreviewRequest& request) {
+    std::error_code code;
+    if (!request.under)
+        return std::nullopt;
+    if (std::filesystem::equivalent(*request.under, request.out, code)) {
+        return cli::fail(cli::exit_usage,
+                         "preview: --out would replace the picture of --under, " + *request.under);
+    }
+    auto read = image::Underlay::read(*request.under);
+    if (!read)
+        return tl::unexpected(read.error());
+    return std::move(*read);
+}
 
 }  // namespace
 
-std::vector<std::string> preview_quantities() {
-    std::vector<std::string> names;
-    for (const auto& [name, quantity] : quantities)
-        names.emplace_back(name);
-    return names;
-}
-
 cli::Result<cli::ExitCode> run_preview(const PreviewRequest& request) {
-    const auto* quantity =
-        std::ranges::find(quantities, request.quantity, &std::pair<std::string_view, DotQuantity>::first);
-    if (quantity == quantities.end())
-        return cli::fail(cli::exit_usage, "preview: there is no quantity \"" + request.quantity + "\"");
+    const auto quantity = dot_quantity(request.quantity, request.light);
+    if (!quantity)
+        return tl::unexpected(quantity.error());
+    if (auto target = image::check_png_target(request.out); !target)
+        return tl::unexpected(target.error());
+    const auto under = read_underlay(request);
+    if (!under)
+        return tl::unexpected(under.error());
     const auto files = kit::sector_files(request.path);
     if (!files)
         return tl::unexpected(files.error());
     RegionPicture picture;
+    bool lacks_quality = false;
     for (const std::string& file : *files) {
         const auto sector = kit::load_sector(file);
         if (!sector)
             return tl::unexpected(sector.error());
-        picture.add(*sector, [&](std::size_t p, float sky_visibility) {
-            return dot_colour(*sector, p, sky_visibility, quantity->second);
-        });
+        picture.add(*sector, quantity->colour);
+        lacks_quality = lacks_quality || !sector->quality;
     }
-    std::optional<Underlay> under;
-    std::error_code code;
-    if (request.under && std::filesystem::equivalent(*request.under, request.out, code)) {
-        return cli::fail(cli::exit_usage,
-                         "preview: --out would replace the picture of --under, " + *request.under);
-    }
-    if (request.under) {
-        auto read = Underlay::read(*request.under);
-        if (!read)
-            return tl::unexpected(read.error());
-        under = std::move(*read);
-    }
-    const auto image = draw(picture, request.metres_per_pixel, under ? &*under : nullptr);
-    if (!image)
-        return tl::unexpected(image.error());
-    const auto written = kit::encode_png(*image).and_then(
-        [&](const kit::FileBytes& png) { return kit::write_png_file(request.out, png); });
-    if (!written)
+    const std::string counts =
+        count_of(files->size(), "sector") + ", " + count_of(picture.dots.size(), "probe");
+    picture.title = quantity->words + " (" + counts + ")";
+    picture.legend = quantity->legend;
+    if (quantity->is_scaled)
+        picture.scale_colours();
+    if (quantity->needs_quality && lacks_quality)
+        picture.legend.push_back({unknown_colour, "not known: files without quality"});
+    if (std::ranges::count(picture.dots, ProbeKind::manual, &Dot::kind) > 0)
+        picture.legend.push_back({{1, 1, 1}, "rim: hand-placed"});
+    const auto [sheet, note] = draw(picture, request.metres_per_pixel, *under ? &**under : nullptr);
+    if (!note.empty())
+        cli::note(note);
+    if (auto written = image::write_png_file(request.out, sheet.image, {sheet.world}); !written)
         return tl::unexpected(written.error());
-    std::printf("%s: %zu x %zu pixels, %zu sector%s, %zu probes\n",
+    std::printf("%s: %zu x %zu pixels, %s\n",
                 request.out.c_str(),
-                image->width,
-                image->height,
-                files->size(),
-                files->size() == 1 ? "" : "s",
-                picture.dots.size());
+                sheet.image.width,
+                sheet.image.height,
+                counts.c_str());
     return cli::exit_done;
 }
 

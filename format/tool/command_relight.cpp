@@ -1,8 +1,8 @@
 #include "command_relight.h"
 
+#include "cli/number_list.h"
 #include "kit/ambient_json.h"
 #include "kit/json_writer.h"
-#include "kit/number_list.h"
 #include "kit/relit_volume.h"
 #include "kit/sector_folder.h"
 #include "relight_points.h"
@@ -99,7 +99,7 @@ cli::Result<std::vector<RelightPoint>> read_places(const RelightRequest& request
 cli::Result<std::optional<Double3>> read_camera(const RelightRequest& request) {
     if (!request.camera)
         return std::nullopt;
-    const auto numbers = kit::number_list(*request.camera, 3);
+    const auto numbers = cli::number_list(*request.camera, 3);
     if (!numbers)
         return cli::fail(cli::exit_usage, "relight: --camera takes x,y,z, not \"" + *request.camera + "\"");
     return Double3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cli/failure.h"
+#include "kit/light_request.h"
 
 #include <cstddef>
 #include <optional>
@@ -31,11 +32,11 @@ struct PreviewRequest {
     std::string path;
     std::string out;
     double metres_per_pixel = 0;  // 0: as fits the region
-    std::string quantity;         // one of preview_quantities()
+    std::string quantity;         // one of dot_quantity_names()
+    kit::LightRequest light;      // its time and gradients
     std::optional<std::string> under;
 };
 cli::Result<cli::ExitCode> run_preview(const PreviewRequest& request);
-[[nodiscard]] std::vector<std::string> preview_quantities();
 
 struct StripRequest {
     std::string in;

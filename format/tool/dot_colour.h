@@ -1,21 +1,44 @@
-// The colour of a probe in a picture.
+// What colours the probes of a picture.
 #pragma once
+
+#include "cli/failure.h"
+#include "kit/light_request.h"
 
 #include <drtv/sector.h>
 
 #include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace drtv::tool {
 
-// What colours the probes. The last two go from green to red, grey where the file has no quality: the largest
-// of a probe's errors (PartQuality::seen_error), and the share of its paths that met the back of a one-sided
-// surface, which tells holes in a map and walls that face the wrong way.
-enum class DotQuantity { relit, sky, errors, back_hits };
+// The linear colour of a probe: asked with its index and its sky visibility, the average of the three upward
+// directions. REQUIRES: the index is below the number of the sector's probes.
+using DotColour = std::function<Float3(const Sector&, std::size_t, float)>;
 
-// Linear. `sky_visibility`: the average of the three upward directions. REQUIRES: p < sector.probes.size().
-[[nodiscard]] Float3 dot_colour(const Sector& sector,
-                                std::size_t p,
-                                float sky_visibility,
-                                DotQuantity quantity);
+struct ColourMeaning {
+    Float3 colour;  // linear
+    std::string text;
+};
+
+struct DotQuantity {
+    std::string name;   // as --quantity has it
+    std::string words;  // of what the picture is one
+    DotColour colour;
+    std::vector<ColourMeaning> legend;
+    // Whether colours are quantities of any size, to be divided so that nearly the brightest is white.
+    bool is_scaled = false;
+    bool needs_quality = false;  // files without quality have probes of unknown_colour
+};
+
+inline constexpr Float3 unknown_colour = {0.2f, 0.2f, 0.2f};
+
+[[nodiscard]] std::vector<std::string> dot_quantity_names();
+
+// `light` is that of "relit" alone; without a time it is a clear noon. Fails where the light cannot be read,
+// or goes with another quantity. REQUIRES: the name is one of the above.
+[[nodiscard]] cli::Result<DotQuantity> dot_quantity(const std::string& name, const kit::LightRequest& light);
 
 }  // namespace drtv::tool

@@ -1,10 +1,9 @@
 // The ground of a region as its probes tell it: height and sky visibility under each pixel of a picture.
 #pragma once
 
-#include "map_extent.h"
+#include "image/map_extent.h"
 #include "region_picture.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -16,26 +15,47 @@ struct Ground {
     float sky_visibility = 0;
 };
 
-class GroundMap {
+// Probes by squares, so that a pixel looks at its surroundings only.
+class ProbeSquares {
   public:
-    // Looks at `dots` only here.
-    GroundMap(const MapExtent& extent, const std::vector<Dot>& dots);
+    ProbeSquares(const image::MapExtent& extent, const std::vector<Dot>& dots);
 
-    // Beyond the last column or row, that of the last pixel.
-    [[nodiscard]] const Ground& at(std::size_t x, std::size_t y) const {
-        const std::size_t column = std::min(x, width_ - 1);
-        const std::size_t row = std::min(y, height_ - 1);
-        return ground_[row * width_ + column];
-    }
-
-    // Lambert shading from the north-west, as relief maps are drawn. REQUIRES: there is ground.
-    [[nodiscard]] float shade(std::size_t x, std::size_t y) const;
+    [[nodiscard]] Ground ground_at(double x_m, double y_m) const;
 
   private:
-    std::size_t width_;
-    std::size_t height_;
-    float run_m_;  // from one pixel to the next
-    std::vector<Ground> ground_;
+    [[nodiscard]] std::size_t column_of(double x_m) const;
+    [[nodiscard]] std::size_t row_of(double y_m) const;
+
+    double x0_m_;
+    double y0_m_;
+    double side_m_;  // of a square
+    std::size_t reach_;
+    std::size_t columns_;
+    std::size_t rows_;
+    std::vector<std::vector<const Dot*>> squares_;
+};
+
+// Goes through a picture from row to row, for a large one would not fit into memory.
+class GroundRows {
+  public:
+    // At row 0. REQUIRES: both outlive it.
+    GroundRows(const image::MapExtent& extent, const std::vector<Dot>& dots);
+
+    void next_row();
+
+    // Beyond the last column, that of the last pixel.
+    [[nodiscard]] const Ground& at(std::size_t x) const;
+    // Lambert shading from the north-west, as relief maps are drawn. REQUIRES: there is ground.
+    [[nodiscard]] float shade(std::size_t x) const;
+
+  private:
+    [[nodiscard]] std::vector<Ground> row(std::size_t y) const;
+
+    const image::MapExtent& extent_;
+    const ProbeSquares squares_;
+    std::size_t y_ = 0;
+    std::vector<Ground> here_;
+    std::vector<Ground> south_;  // of the next row; of the last row its own
 };
 
 }  // namespace drtv::tool

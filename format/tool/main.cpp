@@ -5,6 +5,7 @@
 #include "cli/report.h"
 #include "cli/version.h"
 #include "commands.h"
+#include "dot_colour.h"
 #include "relight_options.h"
 
 #include <drtv/version.h>
@@ -23,7 +24,7 @@ namespace {
 // What the command line says.
 struct CommandLine {
     ValidateRequest validate;
-    PreviewRequest preview{{}, {}, 0, "relit", {}};
+    PreviewRequest preview{{}, {}, 0, "relit", {}, {}};
     StripRequest strip;
     TilesRequest tiles;
     DiffRequest diff;
@@ -80,14 +81,22 @@ void add_views(CLI::App& app, CommandLine& line) {
     preview
         ->add_option("--quantity",
                      line.preview.quantity,
-                     "What colours the probes: " + cli::joined(preview_quantities()))
-        ->check(cli::one_of(preview_quantities()))
+                     "What colours the probes: " + cli::joined(dot_quantity_names()))
+        ->check(cli::one_of(dot_quantity_names()))
         ->capture_default_str();
     preview
         ->add_option("--under",
                      line.preview.under,
                      "A picture to lie under the probes: what bakerd render --top makes")
         ->type_name("FILE.png");
+    CLI::Option* time = preview->add_option("--time", line.preview.light.time, "Relit at this time of a day")
+                            ->type_name("HH:MM");
+    preview
+        ->add_option("--gradients",
+                     line.preview.light.gradients,
+                     "The day (light.schema.json) instead of the built-in one")
+        ->needs(time)
+        ->type_name("FILE.json");
     preview->callback([&line] { line.run = [&line] { return run_preview(line.preview); }; });
 }
 

@@ -1,14 +1,12 @@
 #include "region_picture.h"
 
-#include "commands.h"
 #include "ground_map.h"
 #include "kit/srgb.h"
-#include "map_extent.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
+#include <cstdio>
 
 namespace drtv::tool {
 namespace {
@@ -16,66 +14,65 @@ namespace {
 constexpr double dot_radius_m = 2.1;
 constexpr Float3 empty_colour = {0.012f, 0.014f, 0.02f};
 
-constexpr std::size_t max_covered_sectors = std::size_t{1} << 18;
-
-using Pixel = std::array<std::uint8_t, 3>;
+using Pixel = image::Colour;
 
 Pixel encode_pixel(const Float3& linear) {
     return {kit::encode_srgb(linear[0]), kit::encode_srgb(linear[1]), kit::encode_srgb(linear[2])};
 }
 
-void put_pixel(kit::Image& image, std::size_t x, std::size_t y, const Pixel& pixel) {
+void put_pixel(image::Image& image, std::size_t x, std::size_t y, const Pixel& pixel) {
     std::ranges::copy(pixel, image.at(x, y));
 }
 
 // REQUIRES: there is ground.
-Float3 ground_colour(const GroundMap& ground, std::size_t x, std::size_t y) {
-    const Ground& here = ground.at(x, y);
-    const float lit = 0.15f + 0.85f * ground.shade(x, y);
+Float3 ground_colour(const GroundRows& ground, std::size_t x) {
+    const Ground& here = ground.at(x);
+    const float lit = 0.15f + 0.85f * ground.shade(x);
     const float grey = 0.22f * here.sky_visibility * here.sky_visibility * lit;
     return {grey, grey, grey * 1.05f};
 }
 
-void draw_background(kit::Image& image,
-                     const GroundMap& ground,
-                     const MapExtent& extent,
-                     const Underlay* under) {
+void draw_background(image::Image& image,
+                     const image::MapExtent& extent,
+                     const std::vector<Dot>& dots,
+                     const image::Underlay* under) {
     const Pixel empty = encode_pixel(empty_colour);
-    for (std::size_t y = 0; y < image.height; ++y) {
+    GroundRows ground(extent, dots);
+    for (std::size_t y = 0; y < image.height; ++y, ground.next_row()) {
         for (std::size_t x = 0; x < image.width; ++x) {
             const std::uint8_t* lying = under != nullptr ? under->at(extent.x_m(x), extent.y_m(y)) : nullptr;
             if (lying != nullptr) {
                 put_pixel(image, x, y, {lying[0], lying[1], lying[2]});
                 continue;
             }
-            const bool has_ground = ground.at(x, y).weight > 0;
-            const Pixel pixel = has_ground ? encode_pixel(ground_colour(ground, x, y)) : empty;
+            const bool has_ground = ground.at(x).weight > 0;
+            const Pixel pixel = has_ground ? encode_pixel(ground_colour(ground, x)) : empty;
             put_pixel(image, x, y, pixel);
         }
     }
 }
 
-void darken_pixel(kit::Image& image, std::size_t x, std::size_t y) {
+void darken_pixel(image::Image& image, std::size_t x, std::size_t y) {
     std::uint8_t* pixel = image.at(x, y);
     for (std::size_t c = 0; c < 3; ++c)
         pixel[c] = static_cast<std::uint8_t>(pixel[c] * 3 / 4);
 }
 
-void darken_column(kit::Image& image, std::size_t x) {
+void darken_column(image::Image& image, std::size_t x) {
     if (x >= image.width)
         return;
     for (std::size_t y = 0; y < image.height; ++y)
         darken_pixel(image, x, y);
 }
 
-void darken_row(kit::Image& image, std::size_t y) {
+void darken_row(image::Image& image, std::size_t y) {
     if (y >= image.height)
         return;
     for (std::size_t x = 0; x < image.width; ++x)
         darken_pixel(image, x, y);
 }
 
-void draw_sector_lines(kit::Image& image, const MapExtent& extent) {
+void draw_sector_lines(image::Image& image, const image::MapExtent& extent) {
     const auto pixel_of = [&](std::size_t sectors) {
         const double metres = static_cast<double>(sectors) * sector_size_m;
         return static_cast<std::size_t>(metres / extent.metres_per_pixel);
@@ -100,7 +97,7 @@ PixelRange pixels_around(double centre, double radius, std::size_t size) {
     return {first, std::min(last + 1, size)};
 }
 
-void draw_dot(kit::Image& image, const MapExtent& extent, const Dot& dot) {
+void draw_dot(image::Image& image, const image::MapExtent& extent, const Dot& dot) {
     constexpr Pixel white = {255, 255, 255};
     const Pixel colour = encode_pixel(dot.colour);
     const double radius_px = std::max(1.3, dot_radius_m / extent.metres_per_pixel);
@@ -123,7 +120,7 @@ void draw_dot(kit::Image& image, const MapExtent& extent, const Dot& dot) {
 }
 
 // Higher probes over lower ones, as seen from above.
-void draw_dots(kit::Image& image, const MapExtent& extent, std::vector<Dot> dots) {
+void draw_dots(image::Image& image, const image::MapExtent& extent, std::vector<Dot> dots) {
     std::ranges::stable_sort(dots, {}, &Dot::z_m);
     for (const Dot& dot : dots)
         draw_dot(image, extent, dot);
@@ -139,25 +136,43 @@ void RegionPicture::add(const Sector& sector, const DotColour& colour) {
         Dot dot{x, y, z, 0, probe.kind, {}};
         for (std::size_t b = 0; b < 3; ++b)
             dot.sky_visibility += decode_fixed(probe.sky_visibility[b], sky_visibility_scale) / 3;
-        dot.colour = colour(p, dot.sky_visibility);
+        dot.colour = colour(sector, p, dot.sky_visibility);
         dots.push_back(dot);
     }
 }
 
-cli::Result<kit::Image> draw(const RegionPicture& picture, double metres_per_pixel, const Underlay* under) {
-    const MapExtent extent = measure(picture.sectors, metres_per_pixel);
-    const std::size_t covered = extent.sectors_wide() * extent.sectors_high();
-    if (covered > max_covered_sectors) {
-        return cli::fail(cli::exit_usage,
-                         "the sectors lie too far apart for one picture: the rectangle around them has " +
-                             std::to_string(covered) + " sectors, the limit is " +
-                             std::to_string(max_covered_sectors));
+void RegionPicture::scale_colours() {
+    std::vector<float> brightest;
+    for (const Dot& dot : dots)
+        brightest.push_back(*std::ranges::max_element(dot.colour));
+    std::ranges::sort(brightest);
+    const float white = brightest.empty() ? 0 : brightest[brightest.size() - 1 - brightest.size() / 50];
+    if (white <= 0) {
+        title += "; there is none";
+        return;
     }
-    kit::Image image(extent.width, extent.height);
-    draw_background(image, GroundMap(extent, picture.dots), extent, under);
-    draw_sector_lines(image, extent);
-    draw_dots(image, extent, picture.dots);
-    return image;
+    for (Dot& dot : dots) {
+        for (float& channel : dot.colour)
+            channel /= white;
+    }
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "E/pi = %.3g W/m2", static_cast<double>(white));
+    legend.insert(legend.begin(), {{0, 0, 0}, "none"});
+    legend.insert(legend.begin(), {{1, 1, 1}, text.data()});
+}
+
+DrawnRegion draw(const RegionPicture& picture, double metres_per_pixel, const image::Underlay* under) {
+    const image::MapExtent extent = image::measure(picture.sectors, metres_per_pixel);
+    image::Image map(extent.width, extent.height);
+    draw_background(map, extent, picture.dots, under);
+    draw_sector_lines(map, extent);
+    draw_dots(map, extent, picture.dots);
+    image::SheetText text{picture.title, {}};
+    for (const ColourMeaning& meaning : picture.legend)
+        text.legend.push_back({encode_pixel(meaning.colour), meaning.text});
+    if (under == nullptr)
+        text.legend.push_back({{90, 90, 93}, "ground: shaded, darker under less sky"});
+    return {framed(map, extent, text), extent.note};
 }
 
 }  // namespace drtv::tool

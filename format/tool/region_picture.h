@@ -1,13 +1,16 @@
-// A region of sectors from above: probes as dots over a shaded map of sky visibility.
+// A region of sectors from above: probes as dots over a shaded map of sky visibility, in a frame.
 #pragma once
 
-#include "kit/png.h"
-#include "underlay.h"
+#include "dot_colour.h"
+#include "image/map_sheet.h"
+#include "image/underlay.h"
 
 #include <drtv/sector.h>
 
+#include <array>
 #include <cstddef>
-#include <functional>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace drtv::tool {
@@ -21,22 +24,28 @@ struct Dot {
     Float3 colour{};  // linear
 };
 
-// Of a probe: asked with its index and sky visibility.
-using DotColour = std::function<Float3(std::size_t, float)>;
-
 struct RegionPicture {
     std::vector<std::array<std::int32_t, 2>> sectors;
     std::vector<Dot> dots;
+    std::string title;
+    std::vector<ColourMeaning> legend;
 
     // All probes of a sector.
     void add(const Sector& sector, const DotColour& colour);
+
+    // Divides colours so that all but the brightest fiftieth are at most white, and says so in the legend.
+    void scale_colours();
 };
 
-// Where there is a picture to lie under, the ground is that. At 0 metres a pixel the longer side has about
-// 1,600 pixels. Fails where the sectors lie too far apart for one picture. REQUIRES: at
-// least one sector.
-[[nodiscard]] cli::Result<kit::Image> draw(const RegionPicture& picture,
-                                           double metres_per_pixel,
-                                           const Underlay* under = nullptr);
+struct DrawnRegion {
+    image::MapSheet sheet;
+    std::string note;  // one sentence, where the scale is not the one that was asked for
+};
+
+// Where there is a picture to lie under, the ground is that. `metres_per_pixel` as image::measure has it.
+// REQUIRES: at least one sector.
+[[nodiscard]] DrawnRegion draw(const RegionPicture& picture,
+                               double metres_per_pixel,
+                               const image::Underlay* under = nullptr);
 
 }  // namespace drtv::tool

@@ -1,7 +1,7 @@
 #include "relight_points.h"
 
+#include "cli/number_list.h"
 #include "kit/files.h"
-#include "kit/number_list.h"
 
 #include <nlohmann/json.hpp>
 
@@ -20,7 +20,7 @@ std::optional<Float3> unit(const Double3& v) {
     if (!(length > 0) || !std::isfinite(length))
         return std::nullopt;
     const Double3 divided = {v[0] / length, v[1] / length, v[2] / length};
-    return kit::float3_of(divided.data());
+    return cli::float3_of(divided.data());
 }
 
 std::optional<Double3> triple(const json& object, const char* name) {
@@ -60,10 +60,10 @@ cli::Result<RelightPoint> read_line(std::string_view line) {
 }  // namespace
 
 cli::Result<std::vector<RelightPoint>> read_point(const std::string& at, const std::string& normal) {
-    const auto place = kit::number_list(at, 3);
+    const auto place = cli::number_list(at, 3);
     if (!place)
         return cli::fail(cli::exit_usage, "relight: --at takes x,y,z, not \"" + at + "\"");
-    const auto numbers = kit::number_list(normal, 3);
+    const auto numbers = cli::number_list(normal, 3);
     const auto direction = numbers ? unit({(*numbers)[0], (*numbers)[1], (*numbers)[2]}) : std::nullopt;
     if (!direction) {
         return cli::fail(cli::exit_usage,

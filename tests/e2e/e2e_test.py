@@ -15,9 +15,11 @@ import sys
 import time
 import unittest
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../format"))
 import farm_fixture
 import json_lines
 import map_edits
+import png_file
 from farm_fixture import Farm, make_island, read_folder, tiny_disk, wait_until
 from lines import cutting_proxy, version_server
 from small_maps import LAWN, WALL, change, lawn_with_ballast, with_lamps, with_many_instances, write_map
@@ -112,8 +114,20 @@ class Baking(FarmTest):
         self.assertEqual(
             self.farm.run("drtv", "preview", self.farm.path("pulled"), "--out", picture).returncode, 0
         )
-        with open(picture, "rb") as file:
-            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+        drawn = png_file.read(picture)
+        self.assertGreaterEqual(min(drawn.width, drawn.height), 512)
+        colours = {"hit": (70, 120, 80), "near hit": (230, 190, 60), "rebake": (205, 70, 60)}
+        for sector in plan["sectors"]:
+            i, j = sector["sector"]
+            self.assertEqual(drawn.at(64 * i + 3, 64 * j + 3), colours[sector["verdict"]], sector)
+        under = self.farm.path("under.png")
+        done = self.farm.bake(daemon, "plan", moved, *REGION, *FEW_RAYS, "--png", under, "--under", picture)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotEqual(png_file.read(under).rows, drawn.rows)
+        done = self.farm.bake(daemon, "plan", moved, "--png", self.farm.path("plan.jpg"))
+        self.assert_sentence(done, "plan.jpg", ".png", status=USAGE)
+        done = self.farm.bake(daemon, "plan", moved, "--png", under, "--under", self.farm.path("no.png"))
+        self.assert_sentence(done, "no.png", status=UNREADABLE)
 
     def test_manual_probe_stands_where_the_artist_put_it(self):
         daemon = self.farm.daemon()

@@ -15,6 +15,14 @@ class Picture:
     def pixel(self, x, y):
         return tuple(self.rows[y][3 * x : 3 * x + 3])
 
+    def world(self):
+        """x0, y0, x1, y1 in metres of a picture from above."""
+        return tuple(float(number) for number in self.texts["drtv:world"].split(","))
+
+    def at(self, x_m, y_m):
+        x0, y0, x1, y1 = self.world()
+        return self.pixel(int((x_m - x0) / (x1 - x0) * self.width), int((y1 - y_m) / (y1 - y0) * self.height))
+
 
 def unfiltered(data, stride):
     """Rows of a PNG's bytes, 3 bytes a pixel (PNG specification, 9.2)."""

@@ -1,5 +1,5 @@
 // encode_png() read back by stb_image.
-#include "format/kit/png.h"
+#include "format/image/png.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace drtv::kit {
+namespace drtv::image {
 namespace {
 
 using Colour = std::function<std::uint8_t(std::size_t x, std::size_t y, std::size_t channel)>;
@@ -104,4 +104,4 @@ TEST(PngDecoder, AnyPrefixAndAnyChangedByteIsDefined) {
 }
 
 }  // namespace
-}  // namespace drtv::kit
+}  // namespace drtv::image

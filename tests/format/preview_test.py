@@ -5,18 +5,18 @@ import sys
 import unittest
 
 import png_file
-from tool_case import GOLDEN, GOLDEN_1_1, GOLDEN_1_3, UNREADABLE, Tool, golden, seal
+from tool_case import GOLDEN, GOLDEN_1_1, GOLDEN_1_3, UNREADABLE, USAGE, Tool, golden, seal
 
 
 class Preview(Tool):
     def read_png(self, path):
         picture = png_file.read(path)
-        self.assertEqual(picture.chunks, ["IHDR", "IDAT", "IEND"])
-        return picture.width, picture.height, picture.rows
+        self.assertEqual(picture.chunks, ["IHDR", "tEXt", "IDAT", "IEND"])
+        return picture
 
     def test_folder_becomes_a_picture(self):
         self.write("sectors/one.drtv", golden())
-        for quantity in ("relit", "sky"):
+        for quantity in ("relit", "sky", "static", "dark", "kind", "errors", "back_hits"):
             out = self.path(quantity + ".png")
             stdout = self.expect(
                 0,
@@ -29,14 +29,55 @@ class Preview(Tool):
                 "--quantity",
                 quantity,
             )
-            self.assertIn("128 x 128 pixels, 1 sector, 2 probes", stdout)
-            width, height, rows = self.read_png(out)
-            self.assertEqual((width, height), (128, 128))
-            self.assertGreater(len(set(b"".join(rows))), 8)
-        self.assertEqual(sorted(os.listdir(self.folder)), ["relit.png", "sectors", "sky.png"])
+            self.assertIn("512 x 512 pixels, 1 sector, 2 probes", stdout)
+            picture = self.read_png(out)
+            self.assertEqual((picture.width, picture.height), (512, 512))
+            x0, y0, x1, y1 = picture.world()
+            self.assertEqual((x1 - x0, y1 - y0), (256, 256))
+            self.assertGreater(len(set(b"".join(picture.rows))), 8)
 
-    def middle_pixel(self, data, x_m, y_m, quantity):
-        """The pixel at (x_m, y_m) in the golden sector, whose north-western corner is (-64, 192)."""
+    def test_a_scale_that_is_too_fine_is_bounded_and_said(self):
+        out = self.path("a.png")
+        self.expect(
+            0,
+            "preview",
+            GOLDEN,
+            "--out",
+            out,
+            "--metres-per-pixel",
+            "0.0001",
+            err="the map is drawn at 0.008929 m a pixel, for the limit is 8,192 with the frame",
+        )
+        with open(out, "rb") as file:
+            width, height = struct.unpack(">II", file.read(24)[16:24])
+        self.assertTrue(7168 < max(width, height) <= 8192)
+
+    def test_other_endings_and_a_time_with_another_quantity_are_wrong_usage(self):
+        for name in ("a.jpg", "a", "a.svg"):
+            self.expect(
+                USAGE, "preview", GOLDEN, "--out", self.path(name), err="a picture is written as .png"
+            )
+        time = ("preview", GOLDEN, "--out", self.path("a.png"), "--time", "12:00")
+        self.expect(USAGE, *time, "--quantity", "sky", err="--time goes with --quantity relit")
+        self.expect(USAGE, *time[:-1], "25:00", err="25:00")
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def test_the_time_changes_what_is_relit(self):
+        day = [self.middle_pixel(golden(), -48, 160, "relit", "--time", time) for time in ("06:30", "12:00")]
+        self.assertNotEqual(*day)
+
+    def test_the_legend_stands_below_the_map(self):
+        """Its colours are those of the probes: of kinds, hand-placed ones are blue."""
+        out = self.path("kind.png")
+        self.expect(0, "preview", GOLDEN, "--out", out, "--quantity", "kind")
+        picture = self.read_png(out)
+        below = picture.rows[1500:]
+        legend = {row[3 * x : 3 * x + 3] for row in below for x in range(picture.width)}
+        for colour in ((255, 255, 0), (0, 255, 0), (63, 137, 255), (255, 160, 0)):
+            self.assertIn(bytes(colour), legend)
+
+    def middle_pixel(self, data, x_m, y_m, quantity, *more):
+        """The pixel at a place in the golden sector."""
         out = self.path("pixel.png")
         self.expect(
             0,
@@ -48,10 +89,9 @@ class Preview(Tool):
             "0.5",
             "--quantity",
             quantity,
+            *more,
         )
-        width, _, rows = self.read_png(out)
-        x, y = int((x_m + 64) * 2), int((192 - y_m) * 2)
-        return tuple(rows[y][3 * x : 3 * x + 3])
+        return self.read_png(out).at(x_m, y_m)
 
     # In the golden file of 1.3: the quality of probe 0, and its errors of the two light groups.
     QUALITY, GROUP_ERRORS = 7216, (7288, 7300)
@@ -87,6 +127,13 @@ class Preview(Tool):
             self.assertEqual(self.middle_pixel(data, -48, 160, "errors"), colour, errors)
         red, green, blue = self.middle_pixel(golden(), -48, 160, "errors")
         self.assertTrue(red == green == blue < 255)
+
+    def test_dark_probes_are_red_lit_ones_green(self):
+        for flags, colour in ((0b101, (0, 255, 0)), (0b010, (255, 0, 0))):
+            data = golden(GOLDEN_1_3)
+            data[self.QUALITY + 20] = flags
+            self.assertEqual(self.middle_pixel(seal(data), -48, 160, "dark"), colour)
+        self.assertEqual(len(set(self.middle_pixel(golden(), -48, 160, "dark"))), 1)
 
     def test_relit_shows_static_irradiance(self):
         # The map's own light at probe 0 is red.

@@ -9,6 +9,7 @@ import sys
 import unittest
 
 import jsonschema
+import png_file
 import sector_file
 from tool_case import (
     json_lines,
@@ -570,8 +571,10 @@ class Diff(Tool):
             "--metres-per-pixel",
             "0.5",
         )
-        with open(out, "rb") as file:
-            self.assertEqual(struct.unpack(">II", file.read(24)[16:24]), (128, 128))
+        picture = png_file.read(out)
+        self.assertEqual((picture.width, picture.height), (512, 512))
+        x0, y0, x1, y1 = picture.world()
+        self.assertEqual((x1 - x0, y1 - y0), (256, 256))
 
     def test_same_sector_twice_on_one_side_is_refused(self):
         self.write("a/one.drtv", golden())

@@ -1,6 +1,6 @@
 #include "bakerd/picture/draw.h"
 
-#include "bakerd/picture/caption.h"
+#include "format/image/canvas.h"
 #include "tests/picture/yard.h"
 
 #include <gtest/gtest.h>
@@ -25,20 +25,20 @@ Camera over_the_yard() {
     return Camera::at({26, 2, 3}, {26, 32, 2}, 70, size);
 }
 
-kit::Image drawn(Show show, int threads) {
+image::Image drawn(Show show, int threads) {
     const auto light = morning();
     const Moment moment(baked_yard().set(), *light, {}, {26, 2, 3});
     const Camera camera = over_the_yard();
     const Painter painter(yard_scenery(), moment, camera, show);
     tbb::task_arena arena(threads);
-    kit::Image image(1, 1);
+    image::Image image(1, 1);
     arena.execute([&] { image = draw(painter, size, 0.1f, [](std::size_t) {}); });
     return image;
 }
 
 TEST(Draw, SameBytesForAnyNumberOfThreads) {
     for (const Show show : {Show::all, Show::ambient, Show::leaks, Show::probes}) {
-        const kit::Image one = drawn(show, 1);
+        const image::Image one = drawn(show, 1);
         EXPECT_EQ(one.rgb, drawn(show, 4).rgb);
         // Something is to be seen.
         EXPECT_GT(*std::ranges::max_element(one.rgb), 60);
@@ -47,7 +47,7 @@ TEST(Draw, SameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Draw, TheWallsAreRedAndBlueAndTheGroundGreen) {
-    const kit::Image image = drawn(Show::all, 2);
+    const image::Image image = drawn(Show::all, 2);
     const auto is_mostly = [&](std::size_t x, std::size_t y, std::size_t channel) {
         const std::uint8_t* pixel = image.at(x, y);
         for (std::size_t c = 0; c < 3; ++c) {
@@ -77,15 +77,15 @@ TEST(Draw, CountsItsSteps) {
 }
 
 TEST(Caption, WritesInsideOfThePicture) {
-    kit::Image image(60, 30);
-    picture::write_caption(image, 4, 4, "06:30");
+    image::Image image(60, 30);
+    image::write_caption(image, 4, 4, "06:30");
     EXPECT_GT(std::ranges::count(image.rgb, 235), 100);
     EXPECT_EQ(image.at(0, 0)[0], 0);
     // What does not fit is cut, and changes nothing elsewhere.
-    const kit::Image before = image;
-    picture::write_caption(image, 100, 100, "outside");
+    const image::Image before = image;
+    image::write_caption(image, 100, 100, "outside");
     EXPECT_EQ(image.rgb, before.rgb);
-    picture::write_caption(image, 50, 25, "a long text that goes on and on");
+    image::write_caption(image, 50, 25, "a long text that goes on and on");
     EXPECT_TRUE(std::ranges::equal(std::span(before.rgb).first(25 * 60 * 3),
                                    std::span(image.rgb).first(25 * 60 * 3)));
 }

@@ -187,12 +187,11 @@ class Pictures(Render):
 
     def test_from_above_the_picture_knows_its_world(self):
         picture = self.drawn("--top", "--size", "400x200")
-        x0, y0, x1, y1 = (float(n) for n in picture.texts["drtv:world"].split(","))
+        x0, y0, x1, y1 = picture.world()
         self.assertLessEqual(x0, 0)
         self.assertGreaterEqual(x1, 192)
         self.assertAlmostEqual((x1 - x0) / (y1 - y0), 2, places=4)
-        at = lambda x, y: picture.pixel(int((x - x0) / (x1 - x0) * 400), int((y1 - y) / (y1 - y0) * 200))
-        red, blue, green = at(11.5, 40), at(40.5, 40), at(100, 10)
+        red, blue, green = picture.at(11.5, 40), picture.at(40.5, 40), picture.at(100, 10)
         self.assertGreater(red[0], max(red[1:]) + 30)
         self.assertGreater(blue[2], max(blue[:2]) + 30)
         self.assertGreater(green[1], max(green[0], green[2]) + 30)
@@ -201,9 +200,8 @@ class Pictures(Render):
         run = program(DRTV, "preview", self.sectors, "--under", self.path("picture.png"), "--out", out)
         self.assertEqual(run.returncode, 0, run.stderr)
         preview = png_file.read(out)
-        pixel = lambda x, y: preview.pixel(int(x / 192 * preview.width), int((64 - y) / 64 * preview.height))
         places = [(x + 0.3, y + 0.3) for x in range(2, 190, 9) for y in range(3, 62, 7)]
-        same = sum(pixel(*place) == at(*place) for place in places)
+        same = sum(preview.at(*place) == picture.at(*place) for place in places)
         self.assertGreater(same, 0.15 * len(places), "the rest lies under probes, 4 m apart and as wide")
         self.assertLess(same, len(places))
 
@@ -292,6 +290,7 @@ class BadInput(Render):
         out = ("--out", self.path("x.png"))
         for sentence, arguments in {
             "--out FILE.png says where": (),
+            "a picture is written as .png, and not as .jpg": ("--out", self.path("x.jpg")),
             "--size takes WIDTHxHEIGHT": (*out, "--size", "0x90"),
             'not "1000000x1000000"': (*out, "--size", "1000000x1000000"),
             'not "16000x16000"': (*out, "--size", "16000x16000"),
@@ -339,7 +338,9 @@ class BadInput(Render):
         self.refused(UNREADABLE, "/nowhere", *out, sectors="/nowhere")
         self.refused(UNREADABLE, "/nowhere/x.png", *SOUTH, *SMALL, "--out", "/nowhere/x.png")
         self.refused(UNREADABLE, "is a folder", *SOUTH, *SMALL, "--out", self.root)
-        self.refused(UNREADABLE, "is there and no PNG file", *SOUTH, *SMALL, "--out", self.map)
+        other = os.path.join(tempfile.mkdtemp(dir=self.root), "map.png")
+        shutil.copy(self.map, other)
+        self.refused(UNREADABLE, "is there and no PNG file", *SOUTH, *SMALL, "--out", other)
         self.refused(UNREADABLE, "day.json", *out, "--time", "12:00", "--gradients", "/nowhere/day.json")
 
     def test_what_is_invalid(self):

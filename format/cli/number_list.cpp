@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace drtv::kit {
+namespace drtv::cli {
 
 std::optional<std::vector<double>> number_list(std::string_view text, std::size_t count) {
     std::vector<double> numbers;
@@ -24,8 +24,8 @@ std::optional<std::vector<double>> number_list(std::string_view text, std::size_
     return numbers;
 }
 
-Float3 float3_of(const double* numbers) {
+std::array<float, 3> float3_of(const double* numbers) {
     return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2])};
 }
 
-}  // namespace drtv::kit
+}  // namespace drtv::cli

@@ -1,14 +1,16 @@
-// The part of the world that a picture shows, and where its pixels lie.
+// The part of the world that a map from above shows, and where its pixels lie.
 #pragma once
-
-#include <drtv/conventions.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
-namespace drtv::tool {
+namespace drtv::image {
+
+// World square [64 i, 64 i + 64) x [64 j, 64 j + 64) metres.
+inline constexpr int map_sector_m = 64;
 
 // A rectangle of whole sectors.
 struct MapExtent {
@@ -19,6 +21,7 @@ struct MapExtent {
     double metres_per_pixel;
     std::size_t width;  // pixels
     std::size_t height;
+    std::string note;  // one sentence, where the scale is not the one that was asked for
 
     [[nodiscard]] std::size_t sectors_wide() const { return static_cast<std::size_t>(i1 - i0); }
     [[nodiscard]] std::size_t sectors_high() const { return static_cast<std::size_t>(j1 - j0); }
@@ -26,21 +29,22 @@ struct MapExtent {
     // World position of a pixel's centre; rows run from the north (large y) down.
     [[nodiscard]] double x_m(std::size_t px) const {
         const double pixels = static_cast<double>(px) + 0.5;
-        return i0 * sector_size_m + pixels * metres_per_pixel;
+        return i0 * map_sector_m + pixels * metres_per_pixel;
     }
     [[nodiscard]] double y_m(std::size_t py) const {
         const double pixels = static_cast<double>(py) + 0.5;
-        return j1 * sector_size_m - pixels * metres_per_pixel;
+        return j1 * map_sector_m - pixels * metres_per_pixel;
     }
 
     // The inverse, in pixels.
-    [[nodiscard]] double x_px(double x_m) const { return (x_m - i0 * sector_size_m) / metres_per_pixel; }
-    [[nodiscard]] double y_px(double y_m) const { return (j1 * sector_size_m - y_m) / metres_per_pixel; }
+    [[nodiscard]] double x_px(double x_m) const { return (x_m - i0 * map_sector_m) / metres_per_pixel; }
+    [[nodiscard]] double y_px(double y_m) const { return (j1 * map_sector_m - y_m) / metres_per_pixel; }
 };
 
-// Around all sectors (i, j). At 0 metres a pixel the longer side has 1600 pixels; however far apart the
-// sectors lie, the picture stays under 64 megapixels. REQUIRES: at least one sector.
+// Around all sectors (i, j). At 0 metres a pixel the longer side has about 1,600 pixels. However far apart
+// the sectors lie, no side has more than 7,168: with its frame (map_sheet.h) a picture has at most 8,192.
+// REQUIRES: at least one sector.
 [[nodiscard]] MapExtent measure(std::span<const std::array<std::int32_t, 2>> sectors,
                                 double metres_per_pixel);
 
-}  // namespace drtv::tool
+}  // namespace drtv::image

@@ -1,27 +1,28 @@
 #include "underlay.h"
 
-#include "kit/files.h"
-#include "kit/number_list.h"
+#include "cli/number_list.h"
+#include "folder/whole_file.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace drtv::tool {
+namespace drtv::image {
 
 cli::Result<Underlay> Underlay::read(const std::string& path) {
-    const auto file = kit::read_text(path);
+    const auto file = folder::read_whole(path);
     if (!file)
         return tl::unexpected(file.error());
     const std::span png(reinterpret_cast<const std::uint8_t*>(file->data()), file->size());
-    auto image = kit::decode_png(png);
+    auto image = decode_png(png);
     if (!image)
         return cli::fail(image.error().code, path + ": " + image.error().sentence);
-    const auto text = kit::png_text(png, kit::world_rectangle_key);
-    const auto world = kit::number_list(text.value_or(""), 4);
+    const auto text = png_text(png, world_rectangle_key);
+    const auto world = cli::number_list(text.value_or(""), 4);
     if (!world || !((*world)[0] < (*world)[2] && (*world)[1] < (*world)[3])) {
-        return cli::fail(
-            cli::exit_invalid,
-            path + " does not say which part of the world it shows; bakerd render --top makes such pictures");
+        return cli::fail(cli::exit_invalid,
+                         path +
+                             " does not say which part of the world it shows; bakerd render --top makes such "
+                             "pictures, and drtv preview");
     }
     return Underlay(std::move(*image), {(*world)[0], (*world)[1], (*world)[2], (*world)[3]});
 }
@@ -35,4 +36,4 @@ const std::uint8_t* Underlay::at(double x_m, double y_m) const {
     return is_inside ? image_.at(static_cast<std::size_t>(x), static_cast<std::size_t>(y)) : nullptr;
 }
 
-}  // namespace drtv::tool
+}  // namespace drtv::image

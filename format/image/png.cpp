@@ -15,7 +15,7 @@
 #include <array>
 #include <memory>
 
-namespace drtv::kit {
+namespace drtv::image {
 namespace {
 
 void append(void* png, void* data, int size) {
@@ -107,4 +107,4 @@ std::optional<std::string> png_text(std::span<const std::uint8_t> png, std::stri
     return std::nullopt;
 }
 
-}  // namespace drtv::kit
+}  // namespace drtv::image

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace drtv::kit {
+namespace drtv::image {
 
 struct Image {
     std::size_t width = 0;
@@ -49,4 +49,4 @@ struct PngText {
 // The first text of that key; nothing where there is none.
 [[nodiscard]] std::optional<std::string> png_text(std::span<const std::uint8_t> png, std::string_view key);
 
-}  // namespace drtv::kit
+}  // namespace drtv::image

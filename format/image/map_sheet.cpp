@@ -1,0 +1,216 @@
+#include "map_sheet.h"
+
+#include "sheet_words.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string_view>
+
+namespace drtv::image {
+namespace {
+
+constexpr Colour paper = {18, 20, 24};
+constexpr Colour ink = {222, 224, 228};
+constexpr Colour faint_ink = {140, 144, 150};
+
+// Of the text. With three lines of title and six of legend the largest map and its frame have 8,192 pixels.
+constexpr int max_scale = 6;
+
+class Sheet {
+  public:
+    Sheet(const Image& map, const MapExtent& extent, const SheetText& text)
+        : map_(map),
+          extent_(extent),
+          text_(text),
+          scale_(std::clamp(static_cast<int>(std::max(map.width, map.height)) / 800, 2, max_scale)),
+          line_(12 * scale_) {
+        const int map_width = static_cast<int>(map.width);
+        const int map_height = static_cast<int>(map.height);
+        const int labels_left = widest({metres_of(extent.j0), metres_of(extent.j1)}) + 3 * gap();
+        const int labels_right = widest({number(extent.j0), number(extent.j1)}) + 2 * gap();
+        const int width = std::max(labels_left + map_width + labels_right, static_cast<int>(min_sheet_side));
+        left_ = labels_left + (width - labels_left - map_width - labels_right) / 2;
+        lines_ = wrapped(text.title, width - 2 * gap(), scale_);
+        top_ = gap() + static_cast<int>(lines_.size()) * line_ + line_;
+        lay_out_legend(width);
+        const int foot = line_ + 2 * gap() + scale_bar_height() + legend_height_ + gap();
+        const int height = std::max(top_ + map_height + foot, static_cast<int>(min_sheet_side));
+        image_ = Image(static_cast<std::size_t>(width), static_cast<std::size_t>(height));
+    }
+
+    MapSheet draw() {
+        fill(image_, {0, 0, width(), static_cast<int>(image_.height)}, paper);
+        for (std::size_t n = 0; n < lines_.size(); ++n)
+            write(gap(), gap() + static_cast<int>(n) * line_, lines_[n], ink);
+        for (std::size_t y = 0; y < map_.height; ++y) {
+            std::copy_n(map_.at(0, y),
+                        3 * map_.width,
+                        image_.at(static_cast<std::size_t>(left_), static_cast<std::size_t>(top_) + y));
+        }
+        frame(image_, {left_ - 1, top_ - 1, right() + 1, bottom() + 1}, faint_ink);
+        write_columns();
+        write_rows();
+        const int y = bottom() + line_ + 2 * gap();
+        draw_scale_bar(y);
+        draw_north(y);
+        draw_legend(y + scale_bar_height());
+        return {std::move(image_), {world_rectangle_key, world()}};
+    }
+
+  private:
+    [[nodiscard]] int gap() const { return 4 * scale_; }
+    [[nodiscard]] int width() const { return static_cast<int>(image_.width); }
+    [[nodiscard]] int right() const { return left_ + static_cast<int>(map_.width); }
+    [[nodiscard]] int bottom() const { return top_ + static_cast<int>(map_.height); }
+    [[nodiscard]] int scale_bar_height() const { return 2 * line_ + gap(); }
+    [[nodiscard]] double sector_px() const { return map_sector_m / extent_.metres_per_pixel; }
+
+    static std::string number(int n) { return std::to_string(n); }
+    static std::string metres_of(int sector) { return number(sector * map_sector_m); }
+
+    [[nodiscard]] int widest(std::initializer_list<std::string> texts) const {
+        int widest = 0;
+        for (const std::string& text : texts)
+            widest = std::max(widest, text_width(text, scale_));
+        return widest;
+    }
+
+    void write(int x, int y, std::string_view text, const Colour& colour) {
+        write_text(image_, x, y, text, colour, scale_);
+    }
+    void write_centred(int x, int y, std::string_view text, const Colour& colour) {
+        write(x - text_width(text, scale_) / 2, y, text, colour);
+    }
+
+    // Of the sectors first to last - 1 those whose number is a multiple of the step; the first, where none
+    // is.
+    template <class Visit>
+    static void visit_labelled(int first, int last, int step, Visit visit) {
+        const int multiple = first + ((step - first % step) % step);
+        for (int n = multiple < last ? multiple : first; n < last; n += step)
+            visit(n);
+    }
+
+    void write_columns() {
+        const int number_step =
+            label_step(sector_px(), widest({number(extent_.i0), number(extent_.i1)}) + gap());
+        visit_labelled(extent_.i0, extent_.i1, number_step, [&](int i) {
+            const double middle = extent_.x_px((i + 0.5) * map_sector_m);
+            write_centred(left_ + static_cast<int>(middle), top_ - line_ + gap() / 2, number(i), faint_ink);
+        });
+        const int metre_step =
+            label_step(sector_px(), widest({metres_of(extent_.i0), metres_of(extent_.i1)}) + 2 * gap());
+        visit_labelled(extent_.i0, extent_.i1 + 1, metre_step, [&](int i) {
+            const int x = left_ + static_cast<int>(extent_.x_px(i * map_sector_m));
+            fill(image_, {x, bottom(), x + scale_ / 2, bottom() + gap()}, ink);
+            write_centred(x, bottom() + gap() + scale_, metres_of(i), ink);
+        });
+    }
+
+    void write_rows() {
+        const int step = label_step(sector_px(), line_);
+        visit_labelled(extent_.j0, extent_.j1, step, [&](int j) {
+            const double middle = extent_.y_px((j + 0.5) * map_sector_m);
+            const int y = top_ + static_cast<int>(middle) - 4 * scale_;
+            write(right() + gap(), y, number(j), faint_ink);
+        });
+        visit_labelled(extent_.j0, extent_.j1 + 1, step, [&](int j) {
+            const int y = top_ + static_cast<int>(extent_.y_px(j * map_sector_m));
+            fill(image_, {left_ - gap(), y, left_, y + scale_ / 2}, ink);
+            const std::string text = metres_of(j);
+            write(left_ - 2 * gap() - text_width(text, scale_), y - 4 * scale_, text, ink);
+        });
+    }
+
+    void draw_scale_bar(int y) {
+        const double metres = round_down(0.25 * width() * extent_.metres_per_pixel);
+        const int length = std::max(1, static_cast<int>(metres / extent_.metres_per_pixel));
+        const int x = gap();
+        const int thick = 4 * scale_;
+        fill(image_, {x, y, x + length, y + thick}, ink);
+        fill(image_, {x + scale_, y + scale_, x + length / 2, y + thick - scale_}, paper);
+        write(x, y + thick + 2 * scale_, length_text(metres), ink);
+        const std::string axes = "axes in metres; sectors of 64 m, i above, j on the right";
+        const int beside = x + std::max(length, text_width(length_text(metres), scale_)) + 4 * gap();
+        if (beside + text_width(axes, scale_) < width() - 6 * gap())
+            write(beside, y, axes, faint_ink);
+    }
+
+    // An arrow that points up, and its letter.
+    void draw_north(int y) {
+        const int x = width() - 4 * gap();
+        const int head = 10 * scale_;
+        for (int row = 0; row < head; ++row)
+            fill(image_, {x - row / 2, y + row, x + row / 2 + 1, y + row + 1}, ink);
+        write_centred(x, y + head + 2 * scale_, "N", ink);
+    }
+
+    struct Placed {
+        int x;
+        int row;
+    };
+
+    [[nodiscard]] int swatch() const { return 7 * scale_; }
+
+    void lay_out_legend(int width) {
+        int x = gap();
+        int row = 0;
+        for (const LegendEntry& entry : text_.legend) {
+            const int needed = swatch() + gap() + text_width(entry.text, scale_);
+            if (x > gap() && x + needed > width - gap()) {
+                x = gap();
+                ++row;
+            }
+            legend_.push_back({x, row});
+            x += needed + 3 * gap();
+        }
+        legend_height_ = text_.legend.empty() ? 0 : (row + 1) * line_;
+    }
+
+    void draw_legend(int y) {
+        for (std::size_t n = 0; n < legend_.size(); ++n) {
+            const LegendEntry& entry = text_.legend[n];
+            const auto [x, row] = legend_[n];
+            const int at = y + row * line_;
+            fill(image_, {x, at, x + swatch(), at + swatch()}, entry.colour);
+            frame(image_, {x, at, x + swatch(), at + swatch()}, faint_ink);
+            write(x + swatch() + gap(), at, entry.text, ink);
+        }
+    }
+
+    [[nodiscard]] std::string world() const {
+        const double mpp = extent_.metres_per_pixel;
+        const double x0 = extent_.i0 * map_sector_m - left_ * mpp;
+        const double y1 = extent_.j1 * map_sector_m + top_ * mpp;
+        std::array<char, 160> text{};
+        std::snprintf(text.data(),
+                      text.size(),
+                      "%.17g,%.17g,%.17g,%.17g",
+                      x0,
+                      y1 - static_cast<double>(image_.height) * mpp,
+                      x0 + static_cast<double>(image_.width) * mpp,
+                      y1);
+        return text.data();
+    }
+
+    const Image& map_;
+    const MapExtent& extent_;
+    const SheetText& text_;
+    const int scale_;
+    const int line_;  // pixels from one line of text to the next
+    int left_ = 0;    // of the map
+    int top_ = 0;
+    std::vector<std::string> lines_;  // of the title
+    std::vector<Placed> legend_;
+    int legend_height_ = 0;
+    Image image_{0, 0};
+};
+
+}  // namespace
+
+MapSheet framed(const Image& map, const MapExtent& extent, const SheetText& text) {
+    return Sheet(map, extent, text).draw();
+}
+
+}  // namespace drtv::image
