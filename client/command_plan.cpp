@@ -108,10 +108,10 @@ void print_text(const v1::Plan& plan) {
     const std::int64_t hits = count(plan, v1::PlannedSector::HIT);
     const std::int64_t near_hits = count(plan, v1::PlannedSector::NEAR_HIT);
     const std::int64_t rebakes = count(plan, v1::PlannedSector::REBAKE);
-    std::string text = fmt::format("{} sectors: {} hits, {} near hits",
-                                   with_thousands(plan.sectors_size()),
-                                   with_thousands(hits),
-                                   with_thousands(near_hits));
+    std::string text = fmt::format("{}: {}, {}",
+                                   counted(plan.sectors_size(), "sector", "sectors"),
+                                   counted(hits, "hit", "hits"),
+                                   counted(near_hits, "near hit", "near hits"));
     if (near_hits > 0)
         text += fmt::format(" (at most {:.2g} % off)", largest_bound_of(plan) * 100);
     text += fmt::format(", {} to bake", with_thousands(rebakes));

@@ -32,9 +32,9 @@ void print_submitted(const ServerConnection& connection, const v1::Job& job) {
         const std::string number = job_number(job);
         const std::string time =
             job.seconds_left() > 0 ? fmt::format(", about {}", duration_text(job.seconds_left())) : "";
-        std::printf("job %s: %s sectors%s%s; watch it with: bake watch %s\n",
+        std::printf("job %s: %s%s%s; watch it with: bake watch %s\n",
                     number.c_str(),
-                    with_thousands(job.sectors_total()).c_str(),
+                    counted(job.sectors_total(), "sector", "sectors").c_str(),
                     reused_text(job).c_str(),
                     time.c_str(),
                     number.c_str());

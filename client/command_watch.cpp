@@ -154,7 +154,10 @@ cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1
         for (const std::string& warning : more)
             cli::warn(warning);
     } else if (!more.empty()) {
-        cli::note(fmt::format("{} more warnings: bake report {}", more.size(), job_number(job)));
+        cli::note(
+            fmt::format("{}: bake report {}",
+                        counted(static_cast<std::int64_t>(more.size()), "more warning", "more warnings"),
+                        job_number(job)));
     }
     std::puts((connection.options.json ? json_line(job, &report) : one_line(job)).c_str());
     return end_of(job);

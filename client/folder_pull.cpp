@@ -178,13 +178,13 @@ void FolderPull::report() const {
         std::puts(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
         return;
     }
-    std::string text = fmt::format("{}: {} sector files pulled", folder_, with_thousands(pulled));
+    std::string text = fmt::format("{}: {} pulled", folder_, counted(pulled, "sector file", "sector files"));
     if (unchanged > 0)
         text += fmt::format(", {} were there already", with_thousands(unchanged));
     if (removed_ > 0)
         text += fmt::format(", {} removed that the map no longer has", with_thousands(removed_));
     if (manifest_.unfinished > 0)
-        text += fmt::format(", {} sectors are not done", with_thousands(manifest_.unfinished));
+        text += fmt::format(", {} not done", counted(manifest_.unfinished, "sector is", "sectors are"));
     std::puts(text.c_str());
 }
 

@@ -6,6 +6,7 @@
 #include "client/command_report.h"
 #include "client/command_submit.h"
 #include "client/command_watch.h"
+#include "client/number_text.h"
 #include "client/server_file.h"
 #include "format/cli/option_checks.h"
 #include "format/cli/parse.h"
@@ -181,6 +182,7 @@ int main(int argc, char** argv) {
     const std::size_t warnings = cli::warnings_told().size();
     if (ended && *ended == cli::exit_done && arguments.warnings_as_errors && warnings > 0)
         ended = cli::fail(cli::exit_invalid,
-                          std::to_string(warnings) + " warnings, and --warnings-as-errors makes them errors");
+                          client::counted(static_cast<std::int64_t>(warnings), "warning", "warnings") +
+                              ", which --warnings-as-errors makes errors");
     return cli::end_program(ended);
 }

@@ -33,8 +33,7 @@ std::string list_of(const std::vector<Counted>& things) {
     std::vector<std::string> parts;
     for (const Counted& thing : things) {
         if (thing.count > 0)
-            parts.push_back(
-                fmt::format("{} {}", with_thousands(thing.count), thing.count == 1 ? thing.one : thing.many));
+            parts.push_back(counted(thing.count, thing.one, thing.many));
     }
     return fmt::format("{}", fmt::join(parts, ", "));
 }

@@ -11,6 +11,10 @@ std::string with_thousands(std::int64_t number) {
     return text;
 }
 
+std::string counted(std::int64_t number, const std::string& one, const std::string& many) {
+    return with_thousands(number) + " " + (number == 1 ? one : many);
+}
+
 std::string duration_text(double seconds) {
     const auto whole = static_cast<std::int64_t>(seconds + 0.5);
     const std::int64_t hours = whole / 3600;

@@ -9,6 +9,9 @@ namespace drtv::client {
 // "12,345". REQUIRES: the number is not negative.
 [[nodiscard]] std::string with_thousands(std::int64_t number);
 
+// "1 file", "2,000 files".
+[[nodiscard]] std::string counted(std::int64_t number, const std::string& one, const std::string& many);
+
 // "1:05", "2:00:00". REQUIRES: the duration is not negative.
 [[nodiscard]] std::string duration_text(double seconds);
 

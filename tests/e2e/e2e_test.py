@@ -749,7 +749,7 @@ class Verdicts(FarmTest):
         self.assertEqual(self.farm.bake(daemon, *strict).returncode, 0)
         done = self.farm.bake(daemon, *strict, "--set", "rays=32")
         self.assertEqual(done.returncode, INVALID)
-        self.assertIn("1 warnings, and --warnings-as-errors makes them errors", done.stderr)
+        self.assertIn("1 warning, which --warnings-as-errors makes errors", done.stderr)
 
     def test_the_last_line_says_all(self):
         daemon = self.farm.daemon()
