@@ -132,7 +132,7 @@ cli::Result<cli::ExitCode> run_plan(ServerConnection& connection,
             return tl::unexpected(target.error());
     }
     if (!picture.under.empty()) {
-        auto read = image::Underlay::read(picture.under);
+        auto read = image::Underlay::read(picture.under, picture.path);
         if (!read)
             return tl::unexpected(read.error());
         under = std::move(*read);

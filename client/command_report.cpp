@@ -109,6 +109,7 @@ std::string json_line(const v1::Job& job, const JobReport& report) {
                      {"budget_ended", error.budget_ended()}};
     json["warnings"] = warnings_json(report);
     json["failures"] = failures_json(report);
+    json["unknown"] = report.unknown;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -199,6 +200,9 @@ void print(const v1::Job& job, const JobReport& report) {
     print_times(report);
     print_places(report);
     print_error(report, job);
+    if (report.unknown > 0)
+        std::printf("          %9s  sectors are from an older bakerd, which kept neither places nor errors\n",
+                    with_thousands(report.unknown).c_str());
     print_warnings(report);
     print_failures(report);
 }

@@ -90,6 +90,19 @@ grpc::Status follow(ServerConnection& connection,
     return reader->Finish();
 }
 
+cli::Result<JobReport> read_report(const ServerConnection& connection, const v1::Job& job) {
+    Reconnection reconnection(connection.options.server);
+    for (;;) {
+        JobReport report;
+        const auto listed =
+            for_each_sector(connection, job.name(), [&](const v1::Sector& sector) { report.add(sector); });
+        if (listed)
+            return report;
+        if (!listed.error().may_pass || !reconnection.try_again(false))
+            return tl::unexpected(listed.error());
+    }
+}
+
 std::vector<std::string> untold_warnings(const auto& warnings, const std::set<std::string>& told) {
     std::vector<std::string> untold;
     std::ranges::copy_if(warnings, std::back_inserter(untold), [&](const std::string& warning) {
@@ -136,12 +149,12 @@ cli::Result<v1::Job> watch_job(ServerConnection& connection,
 }
 
 cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1::Job& job) {
-    JobReport report;
-    const auto listed =
-        for_each_sector(connection, job.name(), [&](const v1::Sector& sector) { report.add(sector); });
-    if (!listed)
-        cli::warn(
-            fmt::format("the warnings of the job's sectors are not known: {}", listed.error().sentence));
+    const auto read = read_report(connection, job);
+    if (!read && interrupted())
+        return tl::unexpected(read.error());
+    if (!read)
+        cli::warn(fmt::format("the warnings of the job's sectors are not known: {}", read.error().sentence));
+    const JobReport& report = read ? *read : JobReport();
     const std::vector<std::string>& told = cli::warnings_told();
     const std::set<std::string> told_before(told.begin(), told.end());
     for (const std::string& warning : untold_warnings(job.warnings(), told_before))
@@ -159,7 +172,7 @@ cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1
                         counted(static_cast<std::int64_t>(more.size()), "more warning", "more warnings"),
                         job_number(job)));
     }
-    std::puts((connection.options.json ? json_line(job, &report) : one_line(job)).c_str());
+    std::puts((connection.options.json ? json_line(job, read ? &report : nullptr) : one_line(job)).c_str());
     return end_of(job);
 }
 

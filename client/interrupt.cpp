@@ -10,11 +10,12 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
-#include <map>
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace drtv::client {
 namespace {
@@ -26,8 +27,11 @@ std::array<int, 2> wake_pipe = {-1, -1};
 constexpr std::chrono::milliseconds cancel_patience{500};
 
 std::mutex open_calls_mutex;
-// With what ctrl-C during the call says; guarded by open_calls_mutex.
-std::map<grpc::ClientContext*, std::string> open_calls;
+struct OpenCall {
+    grpc::ClientContext* context;
+    std::string sentence;  // that ctrl-C during the call says
+};
+std::vector<OpenCall> open_calls;  // guarded by open_calls_mutex; a call within another stands behind it
 
 // A handler may do no more than this.
 void on_interrupt(int) {
@@ -41,13 +45,17 @@ void cancel_calls_on_interrupt() {
     while (::read(wake_pipe[0], &byte, 1) != 0) {
         {
             const std::lock_guard lock(open_calls_mutex);
-            for (const auto& [context, sentence] : open_calls)
-                context->TryCancel();
+            for (const OpenCall& call : open_calls)
+                call.context->TryCancel();
         }
         std::this_thread::sleep_for(cancel_patience);
         const std::lock_guard lock(open_calls_mutex);
-        if (!open_calls.empty())
-            std::_Exit(cli::complain({cli::exit_interrupted, open_calls.begin()->second}));
+        if (open_calls.empty())
+            continue;
+        // Over the progress bar.
+        if (::isatty(STDERR_FILENO) == 1)
+            std::fputs("\r\x1b[K", stderr);
+        std::_Exit(cli::complain({cli::exit_interrupted, open_calls.front().sentence}));
     }
 }
 
@@ -69,14 +77,14 @@ bool interrupted() {
 
 InterruptGuard::InterruptGuard(grpc::ClientContext& context, std::string sentence) : context_(context) {
     const std::lock_guard lock(open_calls_mutex);
-    open_calls.emplace(&context_, std::move(sentence));
+    open_calls.push_back({&context_, std::move(sentence)});
     if (interrupted())
         context_.TryCancel();
 }
 
 InterruptGuard::~InterruptGuard() {
     const std::lock_guard lock(open_calls_mutex);
-    open_calls.erase(&context_);
+    std::erase_if(open_calls, [this](const OpenCall& call) { return call.context == &context_; });
 }
 
 }  // namespace drtv::client

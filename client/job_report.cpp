@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <functional>
-#include <iterator>
 
 namespace drtv::client {
 namespace {
@@ -49,14 +48,20 @@ bool ends_name(std::string_view sentence, std::size_t quote) {
 void JobReport::add(const v1::Sector& sector) {
     if (sector.state() == v1::Sector::FAILED)
         failures.push_back({sector.coordinate(), sector.error()});
-    if (!sector.cause().empty())
+    const bool is_done = sector.state() == v1::Sector::DONE;
+    if (!sector.cause().empty() && (!is_done || sector.has_stages()))
         ++causes_[sector.cause()];
-    if (sector.state() != v1::Sector::DONE)
+    if (!is_done)
         return;
-    ++origins[sector.origin()];
-    add_to(placement, sector.placement());
-    add_to(stages, sector.stages());
-    done_.emplace_back(sector).clear_warnings();
+    if (sector.has_stages()) {
+        add_to(stages, sector.stages());
+        v1::Sector& baked = baked_.emplace_back();
+        *baked.mutable_coordinate() = sector.coordinate();
+        *baked.mutable_stages() = sector.stages();
+        baked.set_probes(sector.probes());
+        baked.set_rays(sector.rays());
+    }
+    add_numbers(sector);
     for (const std::string& sentence : sector.warnings()) {
         std::vector<Warning>& of_thing = warnings[named_thing(sentence)];
         const auto [known, is_new] = known_.try_emplace(sentence, of_thing.size());
@@ -66,6 +71,19 @@ void JobReport::add(const v1::Sector& sector) {
     }
 }
 
+void JobReport::add_numbers(const v1::Sector& sector) {
+    if (!sector.has_placement()) {
+        unknown += sector.probes() > 0 ? 1 : 0;
+        return;
+    }
+    add_to(placement, sector.placement());
+    const v1::ReachedError& reached = sector.reached_error();
+    error_medians_.emplace_back(reached.median(), sector.probes());
+    error_tails_.emplace_back(reached.p95(), sector.probes());
+    error_max_ = std::max(error_max_, reached.max());
+    budget_ended_ += reached.budget_ended();
+}
+
 std::vector<std::pair<std::string, std::int64_t>> JobReport::causes() const {
     std::vector<std::pair<std::string, std::int64_t>> causes(causes_.begin(), causes_.end());
     std::ranges::stable_sort(causes, std::greater(), [](const auto& cause) { return cause.second; });
@@ -73,8 +91,7 @@ std::vector<std::pair<std::string, std::int64_t>> JobReport::causes() const {
 }
 
 std::vector<v1::Sector> JobReport::slowest(std::size_t count) const {
-    std::vector<v1::Sector> sectors;
-    std::ranges::copy_if(done_, std::back_inserter(sectors), &v1::Sector::has_stages);
+    std::vector<v1::Sector> sectors = baked_;
     std::ranges::stable_sort(
         sectors, std::greater(), [](const v1::Sector& sector) { return total_of(sector.stages()); });
     sectors.resize(std::min(count, sectors.size()));
@@ -82,18 +99,11 @@ std::vector<v1::Sector> JobReport::slowest(std::size_t count) const {
 }
 
 v1::ReachedError JobReport::error() const {
-    std::vector<std::pair<double, std::int64_t>> medians;
-    std::vector<std::pair<double, std::int64_t>> tails;
     v1::ReachedError error;
-    for (const v1::Sector& sector : done_) {
-        const v1::ReachedError& reached = sector.reached_error();
-        medians.emplace_back(reached.median(), sector.probes());
-        tails.emplace_back(reached.p95(), sector.probes());
-        error.set_max(std::max(error.max(), reached.max()));
-        error.set_budget_ended(error.budget_ended() + reached.budget_ended());
-    }
-    error.set_median(weighted_quantile(std::move(medians), 0.5));
-    error.set_p95(weighted_quantile(std::move(tails), 0.95));
+    error.set_median(weighted_quantile(error_medians_, 0.5));
+    error.set_p95(weighted_quantile(error_tails_, 0.95));
+    error.set_max(error_max_);
+    error.set_budget_ended(budget_ended_);
     return error;
 }
 

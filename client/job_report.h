@@ -27,16 +27,15 @@ class JobReport {
     // One of the job's sectors.
     void add(const v1::Sector& sector);
 
-    // Sectors by where their file comes from; of those that are done.
-    std::map<v1::Sector::Origin, std::int64_t> origins;
-    // Sectors that no earlier result was as good for, by the cause, the most frequent first.
+    // Sectors that were baked or wait for it, by the cause, the most frequent first.
     [[nodiscard]] std::vector<std::pair<std::string, std::int64_t>> causes() const;
 
     v1::StageSeconds stages;  // sums over baked sectors
     // Baked sectors, the slowest first; at most `count`.
     [[nodiscard]] std::vector<v1::Sector> slowest(std::size_t count) const;
 
-    v1::Placement placement;  // sums over sectors
+    v1::Placement placement;   // sums over sectors
+    std::int64_t unknown = 0;  // sectors of which an older server kept neither places nor errors
     // `median` and `p95`: half, and 95 %, of the probes stand in sectors whose median, or 95th percentile, is
     // no larger.
     [[nodiscard]] v1::ReachedError error() const;
@@ -47,9 +46,16 @@ class JobReport {
     std::vector<Failure> failures;
 
   private:
+    void add_numbers(const v1::Sector& sector);
+
     std::map<std::string, std::int64_t> causes_;
     std::map<std::string, std::size_t> known_;  // sentences: their place among those of their thing
-    std::vector<v1::Sector> done_;              // without their warnings
+    std::vector<v1::Sector> baked_;             // what `slowest` gives, and no more
+    // By sector, weighted by its probes.
+    std::vector<std::pair<double, std::int64_t>> error_medians_;
+    std::vector<std::pair<double, std::int64_t>> error_tails_;
+    double error_max_ = 0;
+    std::int64_t budget_ended_ = 0;
 };
 
 [[nodiscard]] double total_of(const v1::StageSeconds& stages);

@@ -16,6 +16,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <string>
@@ -178,6 +179,8 @@ int main(int argc, char** argv) {
     auto connection = client::connect(arguments.connection);
     if (!connection)
         return cli::complain(connection.error());
+    // A line is out as soon as it is whole, however the program ends.
+    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     auto ended = arguments.run(*connection);
     const std::size_t warnings = cli::warnings_told().size();
     if (ended && *ended == cli::exit_done && arguments.warnings_as_errors && warnings > 0)

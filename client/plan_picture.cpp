@@ -68,6 +68,23 @@ PixelRect mark_of(const v1::MapChange& changed, const image::MapExtent& extent) 
     return {x0 - wider, y0 - taller, x1 + wider, y1 + taller};
 }
 
+// Over what lies there; full where nothing does.
+void draw_sector(const v1::PlannedSector& sector,
+                 const image::MapExtent& extent,
+                 const image::Underlay* under,
+                 image::Image& map) {
+    const PixelRect place = place_of(sector, extent);
+    for (int y = place.y0; y < place.y1; ++y) {
+        for (int x = place.x0; x < place.x1; ++x) {
+            const double x_m = extent.x_m(static_cast<std::size_t>(x));
+            const double y_m = extent.y_m(static_cast<std::size_t>(y));
+            const bool covers = under != nullptr && under->at(x_m, y_m) != nullptr;
+            const float share = covers ? over_picture : 1;
+            image::blend(map, {x, y, x + 1, y + 1}, colour_of(sector.verdict()), share);
+        }
+    }
+}
+
 void draw_under(const image::Underlay& under, const image::MapExtent& extent, image::Image& map) {
     for (std::size_t y = 0; y < map.height; ++y) {
         for (std::size_t x = 0; x < map.width; ++x) {
@@ -110,14 +127,18 @@ cli::Result<void> write_plan_picture(const v1::Plan& plan,
     image::fill(map, {0, 0, width, height}, background);
     if (under != nullptr)
         draw_under(*under, extent, map);
-    for (const v1::PlannedSector& sector : plan.sectors()) {
-        const float share = under != nullptr ? over_picture : 1;
-        image::blend(map, place_of(sector, extent), colour_of(sector.verdict()), share);
+    // Several sectors may share a pixel: what matters most is seen.
+    for (const auto verdict :
+         {v1::PlannedSector::HIT, v1::PlannedSector::NEAR_HIT, v1::PlannedSector::REBAKE}) {
+        for (const v1::PlannedSector& sector : plan.sectors()) {
+            if (sector.verdict() == verdict)
+                draw_sector(sector, extent, under, map);
+        }
     }
     for (const v1::MapChange& changed : plan.changes())
         image::frame(map, mark_of(changed, extent), change);
     const image::MapSheet sheet = image::framed(map, extent, text_of(plan));
-    return image::write_png_file(path, sheet.image, {sheet.world});
+    return image::write_png_file(path, sheet.image, sheet.texts);
 }
 
 }  // namespace drtv::client

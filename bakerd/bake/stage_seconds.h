@@ -14,6 +14,14 @@ struct StageSeconds {
     double files = 0;           // all else: reading earlier results, encoding, writing
 
     [[nodiscard]] double total() const { return scene + placement + transfer + local_transfer + files; }
+    StageSeconds& operator+=(const StageSeconds& more) {
+        scene += more.scene;
+        placement += more.placement;
+        transfer += more.transfer;
+        local_transfer += more.local_transfer;
+        files += more.files;
+        return *this;
+    }
     bool operator==(const StageSeconds&) const = default;
 };
 

@@ -206,12 +206,12 @@ JobSectorView Farm::view_of(Checked<JobSectorRow> sector) const {
 }
 
 Result<std::vector<JobSectorView>> Farm::list_sectors(std::int64_t id,
-                                                      std::int64_t first,
+                                                      std::optional<map::SectorCoordinate> after,
                                                       std::int64_t count) {
     if (!book_.view(id))
         return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
     auto rows =
-        database_->read([&](Connection& connection) { return sectors_of_job(connection, id, first, count); });
+        database_->read([&](Connection& connection) { return sectors_of_job(connection, id, after, count); });
     if (!rows)
         return tl::unexpected(rows.error());
     std::vector<JobSectorView> views;

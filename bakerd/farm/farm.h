@@ -81,10 +81,9 @@ class Farm {
                                                          std::uint64_t seen,
                                                          std::chrono::milliseconds patience);
 
-    // In the order of (j, i).
-    [[nodiscard]] store::Result<std::vector<JobSectorView>> list_sectors(std::int64_t job,
-                                                                         std::int64_t first,
-                                                                         std::int64_t count);
+    // The first `count` in the order of (j, i), behind `after` where it is given.
+    [[nodiscard]] store::Result<std::vector<JobSectorView>> list_sectors(
+        std::int64_t job, std::optional<map::SectorCoordinate> after, std::int64_t count);
     [[nodiscard]] store::Result<JobSectorView> get_sector(std::int64_t job, map::SectorCoordinate sector);
 
     [[nodiscard]] store::Result<CacheView> cache();

@@ -75,7 +75,6 @@ void columns(auto& codec, Is<JobSectorRow> auto& sector) {
     codec("bound", sector.bound);
     codec("warnings", sector.warnings);
     worker::visit_values(codec, sector.numbers);
-    codec("seconds", sector.seconds);
     bake::visit_values(codec, sector.stages);
     codec("failed_attempts", sector.failed_attempts);
     codec("error", sector.error);

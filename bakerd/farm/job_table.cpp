@@ -83,7 +83,6 @@ JobSectorRow reused_row(std::int64_t job,
 JobSectorRow baked_row(std::int64_t job, map::SectorCoordinate sector, const worker::SectorResult& result) {
     JobSectorRow row = reused_row(job, sector, result, result.bound);
     row.origin = SectorOrigin::baked;
-    row.seconds = result.seconds;
     row.stages = result.stages;
     return row;
 }
@@ -189,13 +188,14 @@ void remove_unfinished_jobs(Connection& connection, const std::string& request_i
 
 std::vector<Checked<JobSectorRow>> sectors_of_job(Connection& connection,
                                                   std::int64_t job,
-                                                  std::int64_t first,
+                                                  std::optional<map::SectorCoordinate> after,
                                                   std::int64_t count) {
     SQLite::Statement& statement = connection.statement(
-        select_from<JobSectorRow>("job_sector", "WHERE job = ? ORDER BY j, i LIMIT ? OFFSET ?"));
+        select_from<JobSectorRow>("job_sector", "WHERE job = ? AND (j, i) > (?, ?) ORDER BY j, i LIMIT ?"));
     statement.bind(1, job);
-    statement.bind(2, count);
-    statement.bind(3, first);
+    statement.bind(2, after ? after->j : INT32_MIN);
+    statement.bind(3, after ? after->i : INT32_MIN);
+    statement.bind(4, count);
     return read_sectors(statement);
 }
 

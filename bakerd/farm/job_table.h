@@ -39,11 +39,12 @@ void remove_job(Connection& connection, std::int64_t id);
 // Removes jobs whose creation never ended: all, or that of a request.
 void remove_unfinished_jobs(Connection& connection, const std::string& request_id = "");
 
-// Rows `first` to `first + count` of a job's sectors in the order of (j, i).
-[[nodiscard]] std::vector<Checked<JobSectorRow>> sectors_of_job(Connection& connection,
-                                                                std::int64_t job,
-                                                                std::int64_t first = 0,
-                                                                std::int64_t count = INT64_MAX);
+// The first `count` of a job's sectors in the order of (j, i), behind `after` where it is given.
+[[nodiscard]] std::vector<Checked<JobSectorRow>> sectors_of_job(
+    Connection& connection,
+    std::int64_t job,
+    std::optional<map::SectorCoordinate> after = std::nullopt,
+    std::int64_t count = INT64_MAX);
 [[nodiscard]] std::optional<Checked<JobSectorRow>> sector_of_job(Connection& connection,
                                                                  std::int64_t job,
                                                                  map::SectorCoordinate sector);

@@ -71,8 +71,7 @@ struct JobSectorRow {
     float bound = 0;  // how far it may be off, with a result of another map (reuse/assessment.h)
     std::vector<std::string> warnings;
     SectorNumbers numbers;
-    double seconds = 0;  // that its bake took, and of what: 0 unless it was baked
-    StageSeconds stages;
+    StageSeconds stages;  // 0 unless it was baked
     // When failed.
     int failed_attempts = 0;
     std::string error;

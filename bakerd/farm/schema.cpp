@@ -196,10 +196,10 @@ ALTER TABLE job_sector ADD COLUMN moved_out INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE job_sector ADD COLUMN dropped_in_solid INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE job_sector ADD COLUMN removed_by_volume INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE job_sector ADD COLUMN thinned INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE job_sector ADD COLUMN error_median REAL NOT NULL DEFAULT 0; ALTER TABLE job_sector ADD COLUMN error_p95 REAL NOT NULL DEFAULT 0;
+ALTER TABLE job_sector ADD COLUMN error_median REAL NOT NULL DEFAULT 0;
+ALTER TABLE job_sector ADD COLUMN error_p95 REAL NOT NULL DEFAULT 0;
 ALTER TABLE job_sector ADD COLUMN error_max REAL NOT NULL DEFAULT 0;
 ALTER TABLE job_sector ADD COLUMN budget_ended INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE job_sector ADD COLUMN seconds REAL NOT NULL DEFAULT 0;
 ALTER TABLE job_sector ADD COLUMN scene_s REAL NOT NULL DEFAULT 0;
 ALTER TABLE job_sector ADD COLUMN placement_s REAL NOT NULL DEFAULT 0;
 ALTER TABLE job_sector ADD COLUMN transfer_s REAL NOT NULL DEFAULT 0;
@@ -216,7 +216,7 @@ ALTER TABLE result ADD COLUMN error_max REAL NOT NULL DEFAULT 0;
 ALTER TABLE result ADD COLUMN budget_ended INTEGER NOT NULL DEFAULT 0;
 UPDATE job_sector SET sum = row_sum(job, i, j, state, cause, origin, file, file_bytes, probes, rays, bound, warnings,
     candidates, too_near, moved_out, dropped_in_solid, removed_by_volume, thinned, error_median, error_p95, error_max,
-    budget_ended, seconds, scene_s, placement_s, transfer_s, local_transfer_s, files_s, failed_attempts, error)
+    budget_ended, scene_s, placement_s, transfer_s, local_transfer_s, files_s, failed_attempts, error)
   WHERE sum = row_sum(job, i, j, state, file, file_bytes, probes, rays, bound, warnings, failed_attempts, error);
 UPDATE result SET sum = row_sum(i, j, results_key, file, footprint, inventory, file_bytes, footprint_bytes, probes,
     rays, warnings, seconds, bound, candidates, too_near, moved_out, dropped_in_solid, removed_by_volume, thinned, error_median,

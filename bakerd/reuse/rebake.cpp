@@ -123,15 +123,18 @@ class Recording {
             earlier = nullptr;
         const bake::Given given = earlier != nullptr ? given_by(*earlier) : bake::Given{};
         const auto watch = [&]() -> bake::RayWatch& { return recorders_.of_this_thread(); };
+        bake::StageSeconds spent;
+        spent.scene = scene_s_;
         auto baked = bake::bake_sector(world_, sector_, settings_, given, watch);
         if (baked && earlier != nullptr && has_other_groups(baked->sector, earlier->sector)) {
             earlier = nullptr;
+            spent += baked->seconds;
             baked = bake::bake_sector(world_, sector_, settings_, {}, watch);
         }
         if (!baked)
             return tl::unexpected(baked.error());
         Rebake result{std::move(*baked), {}, 0};
-        result.baked.seconds.scene += scene_s_;
+        result.baked.seconds += spent;
         record_settings(result.footprint);
         record_probes(result, earlier);
         record_static_light(result, earlier);

@@ -4,11 +4,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace drtv::service {
 namespace {
 
 constexpr std::int64_t default_page = 1000, max_page = 10000;
+
+// A page's token names the sector before it: 1 + j, i as 16 bits each. 0: the first page.
+constexpr std::int32_t lowest = -32768;
+
+std::int64_t token_of(const map::SectorCoordinate& sector) {
+    return std::int64_t{sector.j - lowest} * 65536 + (sector.i - lowest) + 1;
+}
+
+std::optional<map::SectorCoordinate> sector_before(std::int64_t token) {
+    if (token <= 0)
+        return std::nullopt;
+    const std::int64_t key = std::min<std::int64_t>(token - 1, 0xFFFF'FFFF);
+    return map::SectorCoordinate{static_cast<std::int32_t>(key % 65536) + lowest,
+                                 static_cast<std::int32_t>(key / 65536) + lowest};
+}
 
 v1::Sector::State to_proto(const farm::JobSectorView& view) {
     if (view.running)
@@ -38,7 +54,10 @@ v1::Sector::Origin to_proto(farm::SectorOrigin origin) {
     return v1::Sector::ORIGIN_UNSPECIFIED;
 }
 
+// Of results that an older server recorded they are not known.
 void fill_numbers(const farm::SectorNumbers& numbers, v1::Sector& out) {
+    if (numbers == farm::SectorNumbers())
+        return;
     v1::Placement& placement = *out.mutable_placement();
     placement.set_candidates(numbers.candidates);
     placement.set_too_near(numbers.too_near);
@@ -94,14 +113,14 @@ grpc::Status SectorsService::ListSectors(grpc::ServerContext*,
     const auto page = page_of(request->page_token(), request->page_size(), 0, default_page, max_page);
     if (!page)
         return to_status(page.error());
-    const auto views = farm_.list_sectors(*job, page->from, page->size + 1);
+    const auto views = farm_.list_sectors(*job, sector_before(page->from), page->size + 1);
     if (!views)
         return to_status(views.error());
     const auto size = static_cast<std::size_t>(page->size);
     for (std::size_t n = 0; n < views->size() && n < size; ++n)
         fill((*views)[n], *response->add_sectors());
     if (views->size() > size)
-        response->set_next_page_token(std::to_string(page->from + page->size));
+        response->set_next_page_token(std::to_string(token_of((*views)[size - 1].row.sector)));
     return grpc::Status::OK;
 }
 
@@ -132,8 +151,8 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
                 "{}{}; submit the map again to bake {} again", first_loss, more, lost > 1 ? "them" : "it"));
     };
     if (request->sectors_size() == 0) {
-        for (std::int64_t first = 0;; first += default_page) {
-            const auto views = farm_.list_sectors(*job, first, default_page);
+        for (std::optional<map::SectorCoordinate> after;;) {
+            const auto views = farm_.list_sectors(*job, after, default_page);
             if (!views)
                 return to_status(views.error());
             for (const farm::JobSectorView& view : *views) {
@@ -144,6 +163,7 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
             }
             if (views->size() < static_cast<std::size_t>(default_page))
                 return end();
+            after = views->back().row.sector;
         }
     }
     for (const v1::SectorCoordinate& coordinate : request->sectors()) {

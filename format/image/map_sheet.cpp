@@ -14,17 +14,14 @@ constexpr Colour paper = {18, 20, 24};
 constexpr Colour ink = {222, 224, 228};
 constexpr Colour faint_ink = {140, 144, 150};
 
-// Of the text. With three lines of title and six of legend the largest map and its frame have 8,192 pixels.
+// Pixels of a text's pixel.
+constexpr int min_scale = 2;
 constexpr int max_scale = 6;
 
 class Sheet {
   public:
-    Sheet(const Image& map, const MapExtent& extent, const SheetText& text)
-        : map_(map),
-          extent_(extent),
-          text_(text),
-          scale_(std::clamp(static_cast<int>(std::max(map.width, map.height)) / 800, 2, max_scale)),
-          line_(12 * scale_) {
+    Sheet(const Image& map, const MapExtent& extent, const SheetText& text, int scale)
+        : map_(map), extent_(extent), text_(text), scale_(scale), line_(12 * scale_) {
         const int map_width = static_cast<int>(map.width);
         const int map_height = static_cast<int>(map.height);
         const int labels_left = widest({metres_of(extent.j0), metres_of(extent.j1)}) + 3 * gap();
@@ -36,11 +33,15 @@ class Sheet {
         lay_out_legend(width);
         const int foot = line_ + 2 * gap() + scale_bar_height() + legend_height_ + gap();
         const int height = std::max(top_ + map_height + foot, static_cast<int>(min_sheet_side));
-        image_ = Image(static_cast<std::size_t>(width), static_cast<std::size_t>(height));
+        width_ = width;
+        height_ = height;
     }
 
+    [[nodiscard]] bool fits() const { return std::max(width_, height_) <= static_cast<int>(max_sheet_side); }
+
     MapSheet draw() {
-        fill(image_, {0, 0, width(), static_cast<int>(image_.height)}, paper);
+        image_ = Image(static_cast<std::size_t>(width_), static_cast<std::size_t>(height_));
+        fill(image_, {0, 0, width_, height_}, paper);
         for (std::size_t n = 0; n < lines_.size(); ++n)
             write(gap(), gap() + static_cast<int>(n) * line_, lines_[n], ink);
         for (std::size_t y = 0; y < map_.height; ++y) {
@@ -55,12 +56,13 @@ class Sheet {
         draw_scale_bar(y);
         draw_north(y);
         draw_legend(y + scale_bar_height());
-        return {std::move(image_), {world_rectangle_key, world()}};
+        const std::string map =
+            number(left_) + "," + number(top_) + "," + number(right()) + "," + number(bottom());
+        return {std::move(image_), {{world_rectangle_key, world()}, {map_rectangle_key, map}}};
     }
 
   private:
     [[nodiscard]] int gap() const { return 4 * scale_; }
-    [[nodiscard]] int width() const { return static_cast<int>(image_.width); }
     [[nodiscard]] int right() const { return left_ + static_cast<int>(map_.width); }
     [[nodiscard]] int bottom() const { return top_ + static_cast<int>(map_.height); }
     [[nodiscard]] int scale_bar_height() const { return 2 * line_ + gap(); }
@@ -124,7 +126,7 @@ class Sheet {
     }
 
     void draw_scale_bar(int y) {
-        const double metres = round_down(0.25 * width() * extent_.metres_per_pixel);
+        const double metres = round_down(0.25 * width_ * extent_.metres_per_pixel);
         const int length = std::max(1, static_cast<int>(metres / extent_.metres_per_pixel));
         const int x = gap();
         const int thick = 4 * scale_;
@@ -133,13 +135,13 @@ class Sheet {
         write(x, y + thick + 2 * scale_, length_text(metres), ink);
         const std::string axes = "axes in metres; sectors of 64 m, i above, j on the right";
         const int beside = x + std::max(length, text_width(length_text(metres), scale_)) + 4 * gap();
-        if (beside + text_width(axes, scale_) < width() - 6 * gap())
+        if (beside + text_width(axes, scale_) < width_ - 6 * gap())
             write(beside, y, axes, faint_ink);
     }
 
     // An arrow that points up, and its letter.
     void draw_north(int y) {
-        const int x = width() - 4 * gap();
+        const int x = width_ - 4 * gap();
         const int head = 10 * scale_;
         for (int row = 0; row < head; ++row)
             fill(image_, {x - row / 2, y + row, x + row / 2 + 1, y + row + 1}, ink);
@@ -149,20 +151,25 @@ class Sheet {
     struct Placed {
         int x;
         int row;
+        std::vector<std::string> lines;
     };
 
     [[nodiscard]] int swatch() const { return 7 * scale_; }
 
     void lay_out_legend(int width) {
+        const int room = width - 3 * gap() - swatch();
         int x = gap();
         int row = 0;
         for (const LegendEntry& entry : text_.legend) {
+            std::vector<std::string> lines = wrapped(entry.text, room, scale_);
             const int needed = swatch() + gap() + text_width(entry.text, scale_);
             if (x > gap() && x + needed > width - gap()) {
                 x = gap();
                 ++row;
             }
-            legend_.push_back({x, row});
+            const int more_rows = static_cast<int>(lines.size()) - 1;
+            legend_.push_back({x, row, std::move(lines)});
+            row += more_rows;
             x += needed + 3 * gap();
         }
         legend_height_ = text_.legend.empty() ? 0 : (row + 1) * line_;
@@ -170,12 +177,12 @@ class Sheet {
 
     void draw_legend(int y) {
         for (std::size_t n = 0; n < legend_.size(); ++n) {
-            const LegendEntry& entry = text_.legend[n];
-            const auto [x, row] = legend_[n];
+            const auto& [x, row, lines] = legend_[n];
             const int at = y + row * line_;
-            fill(image_, {x, at, x + swatch(), at + swatch()}, entry.colour);
+            fill(image_, {x, at, x + swatch(), at + swatch()}, text_.legend[n].colour);
             frame(image_, {x, at, x + swatch(), at + swatch()}, faint_ink);
-            write(x + swatch() + gap(), at, entry.text, ink);
+            for (std::size_t k = 0; k < lines.size(); ++k)
+                write(x + swatch() + gap(), at + static_cast<int>(k) * line_, lines[k], ink);
         }
     }
 
@@ -188,8 +195,8 @@ class Sheet {
                       text.size(),
                       "%.17g,%.17g,%.17g,%.17g",
                       x0,
-                      y1 - static_cast<double>(image_.height) * mpp,
-                      x0 + static_cast<double>(image_.width) * mpp,
+                      y1 - height_ * mpp,
+                      x0 + width_ * mpp,
                       y1);
         return text.data();
     }
@@ -199,7 +206,9 @@ class Sheet {
     const SheetText& text_;
     const int scale_;
     const int line_;  // pixels from one line of text to the next
-    int left_ = 0;    // of the map
+    int width_ = 0;   // of the whole
+    int height_ = 0;
+    int left_ = 0;  // of the map
     int top_ = 0;
     std::vector<std::string> lines_;  // of the title
     std::vector<Placed> legend_;
@@ -210,7 +219,13 @@ class Sheet {
 }  // namespace
 
 MapSheet framed(const Image& map, const MapExtent& extent, const SheetText& text) {
-    return Sheet(map, extent, text).draw();
+    // Large pictures are looked at from farther away.
+    const int usual = static_cast<int>(std::max(map.width, map.height)) / 800;
+    for (int scale = std::clamp(usual, min_scale, max_scale);; --scale) {
+        Sheet sheet(map, extent, text, scale);
+        if (sheet.fits() || scale == min_scale)
+            return sheet.draw();
+    }
 }
 
 }  // namespace drtv::image

@@ -27,7 +27,7 @@ struct SheetText {
 
 struct MapSheet {
     Image image;
-    PngText world;  // of the whole image: the file says which part of the world it shows
+    std::vector<PngText> texts;  // which part of the world it shows, and where the map stands in it
 };
 
 // Left and below the map stand metres, above and right of it the numbers i and j of sectors. REQUIRES: the

@@ -32,6 +32,9 @@ struct Image {
 
 // Names the part of the world that a picture from above shows: x0,y0,x1,y1 in metres.
 inline constexpr const char* world_rectangle_key = "drtv:world";
+// Names the pixels of such a picture that show the map, where a frame is around it: x0,y0,x1,y1, the last two
+// behind it.
+inline constexpr const char* map_rectangle_key = "drtv:map";
 
 // A line of text in the file, which pictures are shown without: Latin-1, the key 1 to 79 characters.
 struct PngText {

@@ -11,19 +11,22 @@ namespace drtv::image {
 
 class Underlay {
   public:
-    // A PNG that says which part of the world it shows, as `bakerd render --top`, `drtv preview` and `bake
-    // plan
-    // --png` make them. Fails where it is none.
-    [[nodiscard]] static cli::Result<Underlay> read(const std::string& path);
+    // A PNG that says which part of the world it shows. Fails where it is none, and where the picture that is
+    // to be drawn over it, at `target`, would replace it.
+    [[nodiscard]] static cli::Result<Underlay> read(const std::string& path, const std::string& target = "");
 
     // The three bytes at a place in metres; null outside.
     [[nodiscard]] const std::uint8_t* at(double x_m, double y_m) const;
 
   private:
-    Underlay(Image image, const std::array<double, 4>& world) : image_(std::move(image)), world_(world) {}
+    using Rectangle = std::array<double, 4>;  // x0, y0, x1, y1
+
+    Underlay(Image image, const Rectangle& world, const Rectangle& map)
+        : image_(std::move(image)), world_(world), map_(map) {}
 
     Image image_;
-    std::array<double, 4> world_;  // x0, y0, x1, y1
+    Rectangle world_;  // metres
+    Rectangle map_;    // the pixels that show it
 };
 
 }  // namespace drtv::image

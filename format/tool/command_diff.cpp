@@ -145,7 +145,7 @@ cli::Result<void> write_picture(RegionPicture& picture, const DiffRequest& reque
     const auto [sheet, note] = draw(picture, request.metres_per_pixel);
     if (!note.empty())
         cli::note(note);
-    auto written = image::write_png_file(*request.png, sheet.image, {sheet.world});
+    auto written = image::write_png_file(*request.png, sheet.image, sheet.texts);
     if (written && !request.json)
         std::printf("%s: %zu x %zu pixels\n", request.png->c_str(), sheet.image.width, sheet.image.height);
     return written;

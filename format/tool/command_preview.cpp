@@ -6,10 +6,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 
 namespace drtv::tool {
@@ -20,14 +18,9 @@ std::string count_of(std::size_t count, const std::string& word) {
 }
 
 cli::Result<std::optional<image::Underlay>> read_underlay(const PreviewRequest& request) {
-    std::error_code code;
     if (!request.under)
         return std::nullopt;
-    if (std::filesystem::equivalent(*request.under, request.out, code)) {
-        return cli::fail(cli::exit_usage,
-                         "preview: --out would replace the picture of --under, " + *request.under);
-    }
-    auto read = image::Underlay::read(*request.under);
+    auto read = image::Underlay::read(*request.under, request.out);
     if (!read)
         return tl::unexpected(read.error());
     return std::move(*read);
@@ -54,7 +47,7 @@ cli::Result<cli::ExitCode> run_preview(const PreviewRequest& request) {
         if (!sector)
             return tl::unexpected(sector.error());
         picture.add(*sector, quantity->colour);
-        lacks_quality = lacks_quality || !sector->quality;
+        lacks_quality = lacks_quality || (!sector->quality && !sector->probes.empty());
     }
     const std::string counts =
         count_of(files->size(), "sector") + ", " + count_of(picture.dots.size(), "probe");
@@ -69,7 +62,7 @@ cli::Result<cli::ExitCode> run_preview(const PreviewRequest& request) {
     const auto [sheet, note] = draw(picture, request.metres_per_pixel, *under ? &**under : nullptr);
     if (!note.empty())
         cli::note(note);
-    if (auto written = image::write_png_file(request.out, sheet.image, {sheet.world}); !written)
+    if (auto written = image::write_png_file(request.out, sheet.image, sheet.texts); !written)
         return tl::unexpected(written.error());
     std::printf("%s: %zu x %zu pixels, %s\n",
                 request.out.c_str(),

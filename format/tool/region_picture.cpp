@@ -72,7 +72,11 @@ void darken_row(image::Image& image, std::size_t y) {
         darken_pixel(image, x, y);
 }
 
+// None where they would leave nothing else.
 void draw_sector_lines(image::Image& image, const image::MapExtent& extent) {
+    constexpr double min_sector_px = 8;
+    if (sector_size_m / extent.metres_per_pixel < min_sector_px)
+        return;
     const auto pixel_of = [&](std::size_t sectors) {
         const double metres = static_cast<double>(sectors) * sector_size_m;
         return static_cast<std::size_t>(metres / extent.metres_per_pixel);
@@ -142,22 +146,25 @@ void RegionPicture::add(const Sector& sector, const DotColour& colour) {
 }
 
 void RegionPicture::scale_colours() {
-    std::vector<float> brightest;
-    for (const Dot& dot : dots)
-        brightest.push_back(*std::ranges::max_element(dot.colour));
-    std::ranges::sort(brightest);
-    const float white = brightest.empty() ? 0 : brightest[brightest.size() - 1 - brightest.size() / 50];
-    if (white <= 0) {
+    std::vector<float> lit;
+    for (const Dot& dot : dots) {
+        const float brightest = *std::ranges::max_element(dot.colour);
+        if (brightest > 0)
+            lit.push_back(brightest);
+    }
+    if (lit.empty()) {
         title += "; there is none";
         return;
     }
+    std::ranges::sort(lit);
+    const float white = lit[lit.size() - 1 - lit.size() / 50];
     for (Dot& dot : dots) {
         for (float& channel : dot.colour)
             channel /= white;
     }
     std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), "E/pi = %.3g W/m2", static_cast<double>(white));
-    legend.insert(legend.begin(), {{0, 0, 0}, "none"});
+    std::snprintf(
+        text.data(), text.size(), "white: irradiance / pi of %.3g W/m2", static_cast<double>(white));
     legend.insert(legend.begin(), {{1, 1, 1}, text.data()});
 }
 

@@ -33,7 +33,8 @@ struct RegionPicture {
     // All probes of a sector.
     void add(const Sector& sector, const DotColour& colour);
 
-    // Divides colours so that all but the brightest fiftieth are at most white, and says so in the legend.
+    // Divides colours so that of those that are not black all but the brightest fiftieth are at most white,
+    // and says so in the legend.
     void scale_colours();
 };
 

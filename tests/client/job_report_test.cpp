@@ -65,6 +65,29 @@ TEST(JobReport, AHitHasPlacesAndErrorsAndNoTime) {
     EXPECT_EQ(report.error().median(), 0.01);
 }
 
+TEST(JobReport, WhatAnOlderServerDidNotKeepCountsAsUnknown) {
+    JobReport report;
+    report.add(baked(1, 10, 0.01, 1));
+    v1::Sector old = baked(2, 1000, 0, 1);
+    old.set_origin(v1::Sector::ORIGIN_UNSPECIFIED);
+    old.clear_stages();
+    old.clear_placement();
+    old.clear_reached_error();
+    report.add(old);
+    EXPECT_EQ(report.unknown, 1);
+    EXPECT_EQ(report.error().median(), 0.01);
+    EXPECT_EQ(report.placement.candidates(), 100);
+}
+
+TEST(JobReport, ANearHitIsNoCauseOfBaking) {
+    JobReport report;
+    v1::Sector near = baked(1, 10, 0.01, 1);
+    near.set_origin(v1::Sector::NEAR_HIT);
+    near.clear_stages();
+    report.add(near);
+    EXPECT_TRUE(report.causes().empty());
+}
+
 TEST(JobReport, CausesCountWhatWaitsToo) {
     JobReport report;
     v1::Sector waiting;

@@ -114,20 +114,8 @@ class Baking(FarmTest):
         self.assertEqual(
             self.farm.run("drtv", "preview", self.farm.path("pulled"), "--out", picture).returncode, 0
         )
-        drawn = png_file.read(picture)
-        self.assertGreaterEqual(min(drawn.width, drawn.height), 512)
-        colours = {"hit": (70, 120, 80), "near hit": (230, 190, 60), "rebake": (205, 70, 60)}
-        for sector in plan["sectors"]:
-            i, j = sector["sector"]
-            self.assertEqual(drawn.at(64 * i + 3, 64 * j + 3), colours[sector["verdict"]], sector)
-        under = self.farm.path("under.png")
-        done = self.farm.bake(daemon, "plan", moved, *REGION, *FEW_RAYS, "--png", under, "--under", picture)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertNotEqual(png_file.read(under).rows, drawn.rows)
-        done = self.farm.bake(daemon, "plan", moved, "--png", self.farm.path("plan.jpg"))
-        self.assert_sentence(done, "plan.jpg", ".png", status=USAGE)
-        done = self.farm.bake(daemon, "plan", moved, "--png", under, "--under", self.farm.path("no.png"))
-        self.assert_sentence(done, "no.png", status=UNREADABLE)
+        with open(picture, "rb") as file:
+            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
 
     def test_manual_probe_stands_where_the_artist_put_it(self):
         daemon = self.farm.daemon()
@@ -1372,8 +1360,22 @@ class Incremental(FarmTest):
         self.assertTrue(any("the_palm" in change["what"] for change in plan["changes"]), plan["changes"])
         for sector in plan["sectors"]:
             self.assertEqual("reason" in sector, sector["verdict"] != "hit", sector)
-        with open(picture, "rb") as file:
-            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+        drawn = png_file.read(picture)
+        self.assertGreaterEqual(min(drawn.width, drawn.height), 512)
+        colours = {"hit": (70, 120, 80), "near hit": (230, 190, 60), "rebake": (205, 70, 60)}
+        for sector in plan["sectors"]:
+            i, j = sector["sector"]
+            self.assertEqual(drawn.at(64 * i + 3, 64 * j + 3), colours[sector["verdict"]], sector)
+        under = self.farm.path("under.png")
+        done = self.farm.bake(daemon, "plan", moved, *REGION, *FEW_RAYS, "--png", under, "--under", picture)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotEqual(png_file.read(under).rows, drawn.rows)
+        done = self.farm.bake(daemon, "plan", moved, "--png", self.farm.path("plan.jpg"))
+        self.assert_sentence(done, "plan.jpg", ".png", status=USAGE)
+        done = self.farm.bake(daemon, "plan", moved, "--png", under, "--under", self.farm.path("no.png"))
+        self.assert_sentence(done, "no.png", status=UNREADABLE)
+        done = self.farm.bake(daemon, "plan", moved, "--png", under, "--under", under)
+        self.assert_sentence(done, "would replace the picture of --under", status=USAGE)
         text = self.farm.bake(daemon, "plan", moved, *REGION, *FEW_RAYS).stdout
         self.assertIn(f"{plan['rebakes']} to bake, about 0:", text)
         self.assertIn("the_palm", text)

@@ -117,7 +117,9 @@ class FarmTest : public testing::Test {
         EXPECT_GE(view.row.ended_ms, view.row.created_ms);
     }
 
-    std::vector<JobSectorView> sectors(std::int64_t job) { return farm->list_sectors(job, 0, 1000).value(); }
+    std::vector<JobSectorView> sectors(std::int64_t job) {
+        return farm->list_sectors(job, std::nullopt, 1000).value();
+    }
     std::vector<Digest> results(std::int64_t job) {
         std::vector<Digest> found;
         const std::vector<JobSectorView> all = sectors(job);
@@ -191,7 +193,7 @@ TEST_F(FarmTest, WrongRequestsAreRefusedAndLeaveNoJob) {
         EXPECT_EQ(farm->get_job(id).error().code, store::ErrorCode::not_found);
         EXPECT_EQ(farm->cancel_job(id).error().code, store::ErrorCode::not_found);
         EXPECT_EQ(farm->wait_for_change(id, 0, 1ms).error().code, store::ErrorCode::not_found);
-        EXPECT_EQ(farm->list_sectors(id, 0, 1).error().code, store::ErrorCode::not_found);
+        EXPECT_EQ(farm->list_sectors(id, std::nullopt, 1).error().code, store::ErrorCode::not_found);
         EXPECT_EQ(farm->get_sector(id, {0, 0}).error().code, store::ErrorCode::not_found);
     }
 }

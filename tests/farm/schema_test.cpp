@@ -2,6 +2,7 @@
 #include "bakerd/farm/job_table.h"
 #include "bakerd/farm/map_table.h"
 #include "bakerd/farm/result_cache.h"
+#include "bakerd/farm/result_table.h"
 #include "tests/store/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -165,11 +166,17 @@ INSTANTIATE_TEST_SUITE_P(Versions, KeptSchemas, testing::Values(4, 5, 6, 7));
 TEST_F(SchemaTest, ARowThatWasDamagedStaysSo) {
     write_schema(7);
     SQLite::Database(path, SQLite::OPEN_READWRITE)
-        .exec("UPDATE job_sector SET probes = probes + 1 WHERE job = 1 AND i = 0 AND j = 0");
+        .exec(
+            "UPDATE job_sector SET probes = probes + 1 WHERE job = 1 AND i = 0 AND j = 0;"
+            "UPDATE result SET rays = rays + 1 WHERE id = 1");
     const auto database = open();
     const auto sectors =
         read(*database, [](Connection& connection) { return sectors_of_job(connection, 1); });
     EXPECT_EQ(std::ranges::count(sectors, false, &Checked<JobSectorRow>::sound), 1);
+    const auto results =
+        read(*database, [](Connection& connection) { return idle_results(connection, 0, 100); });
+    EXPECT_EQ(results.size(), 9u);
+    EXPECT_EQ(std::ranges::count(results, false, &Checked<ResultRow>::sound), 1);
 }
 
 // Their records are of another kind: they are found no more, and leave the cache in their time.

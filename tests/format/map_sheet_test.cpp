@@ -56,7 +56,8 @@ TEST(MapSheet, HoldsTheMapWholeWhateverItsShape) {
 }
 
 TEST(MapSheet, IsNeverLargerThanSaid) {
-    const std::string words(200, 'W');
+    const std::string words =
+        "largest relative standard error of the parts of a probe's light (2 sectors, 1,234 probes)";
     for (const Sectors& sectors :
          {Sectors{{-16384, -16384}, {16383, 16383}}, Sectors{{16383, -16384}, {16383, 16383}},
           Sectors{{-16384, -16384}, {16383, -16384}}}) {
@@ -79,7 +80,7 @@ TEST(MapSheet, SaysWhichPartOfTheWorldItShows) {
     fill(map, {x, y, x + 1, y + 1}, marker);
     const MapSheet sheet = framed(map, extent, {"title", {}});
     const std::string path = folder.path() + "/sheet.png";
-    ASSERT_TRUE(write_png_file(path, sheet.image, {sheet.world}));
+    ASSERT_TRUE(write_png_file(path, sheet.image, sheet.texts));
     const auto under = Underlay::read(path);
     ASSERT_TRUE(under) << under.error().sentence;
     const std::uint8_t* there = under->at(10.25, 200.25);
@@ -87,6 +88,11 @@ TEST(MapSheet, SaysWhichPartOfTheWorldItShows) {
     EXPECT_TRUE(std::equal(marker.begin(), marker.end(), there));
     EXPECT_TRUE(std::equal(white.begin(), white.end(), under->at(10.75, 200.25)));
     EXPECT_TRUE(std::equal(white.begin(), white.end(), under->at(10.25, 199.75)));
+    EXPECT_EQ(under->at(-65, 200), nullptr) << "the frame is no part of the map";
+    EXPECT_NE(under->at(-63, 200), nullptr);
+    const auto same = Underlay::read(path, path);
+    ASSERT_FALSE(same);
+    EXPECT_EQ(same.error().code, cli::exit_usage);
 }
 
 TEST(MapExtent, AScaleThatIsTooFineIsToldAndAllOthersKept) {
