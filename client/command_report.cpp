@@ -4,7 +4,7 @@
 #include "client/job_report.h"
 #include "client/job_text.h"
 #include "client/number_text.h"
-#include "client/sector_list.h"
+#include "client/read_report.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -107,6 +107,7 @@ std::string json_line(const v1::Job& job, const JobReport& report) {
                      {"p95", error.p95()},
                      {"max", error.max()},
                      {"budget_ended", error.budget_ended()}};
+    json["map_warnings"] = report.map_warnings;
     json["warnings"] = warnings_json(report);
     json["failures"] = failures_json(report);
     json["unknown"] = report.unknown;
@@ -168,9 +169,11 @@ void print_error(const JobReport& report, const v1::Job& job) {
 }
 
 void print_warnings(const JobReport& report) {
-    if (report.warnings.empty())
+    if (report.warning_count() == 0)
         return;
     std::printf("warnings  %9s\n", with_thousands(report.warning_count()).c_str());
+    for (const std::string& sentence : report.map_warnings)
+        std::printf("    %s\n", sentence.c_str());
     for (const auto& [thing, sentences] : report.warnings) {
         std::printf("  %s\n", thing.empty() ? "of no object with a name" : thing.c_str());
         for (std::size_t n = 0; n < std::min(sentences.size(), sentences_shown); ++n) {
@@ -213,15 +216,13 @@ cli::Result<cli::ExitCode> run_report(ServerConnection& connection, const std::s
     const auto found = get_job(connection, job);
     if (!found)
         return tl::unexpected(found.error());
-    JobReport report;
-    const auto listed =
-        for_each_sector(connection, found->name(), [&](const v1::Sector& sector) { report.add(sector); });
-    if (!listed)
-        return tl::unexpected(listed.error());
+    const auto report = read_report(connection, *found);
+    if (!report)
+        return tl::unexpected(report.error());
     if (connection.options.json)
-        std::puts(json_line(*found, report).c_str());
+        std::puts(json_line(*found, *report).c_str());
     else
-        print(*found, report);
+        print(*found, *report);
     return cli::exit_done;
 }
 

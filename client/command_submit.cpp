@@ -17,6 +17,9 @@
 namespace drtv::client {
 namespace {
 
+// For the files that are done when the time of --timeout is over.
+constexpr double last_pull_s = 10;
+
 std::string random_id() {
     std::random_device random;
     std::string id;
@@ -63,14 +66,18 @@ cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
         if (!pulled || now.sectors_done() == done)
             return;
         done = now.sectors_done();
-        pulled = pull->pull();
+        pulled = pull->pull_new();
         // The end tries again.
         if (!pulled && pulled.error().may_pass)
             pulled = {};
     };
-    const auto job = watch_job(connection, number, {.timeout_s = options.timeout_s, .progressed = pull_new});
-    if (!job && job.error().code == cli::exit_interrupted)
+    limit_time(options.timeout_s);
+    const auto job = watch_job(connection, number, {.progressed = pull_new});
+    if (!job && (job.error().code == cli::exit_interrupted || job.error().may_pass))
         return tl::unexpected(job.error());
+    // For what is done by then.
+    if (time_is_over())
+        limit_time(last_pull_s);
     if (pulled)
         pulled = pull->finish();
     if (pulled)
@@ -115,8 +122,10 @@ cli::Result<cli::ExitCode> run_submit(ServerConnection& connection, const Submit
     }
     if (!options.pull_folder.empty())
         return watch_and_pull(connection, created, prepared->map, options);
-    if (options.wait)
-        return run_watch(connection, number, {.timeout_s = options.timeout_s});
+    if (options.wait) {
+        limit_time(options.timeout_s);
+        return run_watch(connection, number, {});
+    }
     print_submitted(connection, created);
     return cli::exit_done;
 }

@@ -2,12 +2,11 @@
 
 #include "client/interrupt.h"
 #include "client/job_end.h"
-#include "client/job_report.h"
 #include "client/job_text.h"
 #include "client/number_text.h"
 #include "client/progress.h"
+#include "client/read_report.h"
 #include "client/reconnection.h"
-#include "client/sector_list.h"
 #include "format/cli/report.h"
 
 #include <fmt/format.h>
@@ -23,17 +22,6 @@
 
 namespace drtv::client {
 namespace {
-
-// Nothing: without a limit.
-using Deadline = std::optional<std::chrono::system_clock::time_point>;
-
-Deadline deadline_in(double seconds) {
-    using std::chrono::system_clock;
-    if (seconds <= 0)
-        return std::nullopt;
-    return system_clock::now() +
-           std::chrono::duration_cast<system_clock::duration>(std::chrono::duration<double>(seconds));
-}
 
 std::string progress_text(const v1::Job& job) {
     std::string text = fmt::format("{}/{} sectors  {} probes",
@@ -61,15 +49,12 @@ grpc::Status follow(ServerConnection& connection,
                     const std::string& name,
                     Progress& progress,
                     const WatchOptions& options,
-                    const Deadline& deadline,
                     const std::string& left,
                     v1::Job& last,
                     bool& heard) {
     v1::WatchJobRequest request;
     request.set_name(name);
     grpc::ClientContext context;
-    if (deadline)
-        context.set_deadline(*deadline);
     const InterruptGuard guard(context, left);
     const auto reader = connection.jobs->WatchJob(&context, request);
     v1::Job job;
@@ -90,19 +75,6 @@ grpc::Status follow(ServerConnection& connection,
     return reader->Finish();
 }
 
-cli::Result<JobReport> read_report(const ServerConnection& connection, const v1::Job& job) {
-    Reconnection reconnection(connection.options.server);
-    for (;;) {
-        JobReport report;
-        const auto listed =
-            for_each_sector(connection, job.name(), [&](const v1::Sector& sector) { report.add(sector); });
-        if (listed)
-            return report;
-        if (!listed.error().may_pass || !reconnection.try_again(false))
-            return tl::unexpected(listed.error());
-    }
-}
-
 std::vector<std::string> untold_warnings(const auto& warnings, const std::set<std::string>& told) {
     std::vector<std::string> untold;
     std::ranges::copy_if(warnings, std::back_inserter(untold), [&](const std::string& warning) {
@@ -120,30 +92,32 @@ cli::Result<v1::Job> watch_job(ServerConnection& connection,
     const std::string number = name.substr(name.find('/') + 1);
     const std::string come_back = "come back with: bake watch " + number;
     const std::string left = fmt::format("job {} goes on without this client; {}", number, come_back);
-    const Deadline deadline = deadline_in(options.timeout_s);
     Progress progress;
     v1::Job job;
     Reconnection reconnection(connection.options.server);
+    bool is_lost = false;
     for (;;) {
         bool heard = false;
-        const grpc::Status status = follow(connection, name, progress, options, deadline, left, job, heard);
+        const grpc::Status status = follow(connection, name, progress, options, left, job, heard);
         progress.clear();
         if (interrupted())
             return cli::fail(cli::exit_interrupted, left);
         if (has_ended(job))
             break;
-        if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED ||
-            (deadline && std::chrono::system_clock::now() >= *deadline)) {
-            return cli::fail(cli::exit_timeout,
-                             fmt::format("job {} has not ended after {} s, and goes on; {}",
-                                         number,
-                                         options.timeout_s,
-                                         come_back));
+        const bool is_away = status.error_code() == grpc::StatusCode::UNAVAILABLE;
+        is_lost = is_away || (is_lost && !heard);
+        const bool goes_on = is_away && !job.name().empty() && reconnection.try_again(heard);
+        if (goes_on)
+            continue;
+        if (time_is_over()) {
+            const std::string what =
+                is_lost ? fmt::format("bakerd at {} is away, and job {} had not ended before",
+                                      connection.options.server,
+                                      number)
+                        : fmt::format("job {} goes on", number);
+            return cli::fail(cli::exit_timeout, fmt::format("the time is over: {}; {}", what, come_back));
         }
-        if (status.error_code() != grpc::StatusCode::UNAVAILABLE)
-            return tl::unexpected(connection.failure(status));
-        if (job.name().empty() || !reconnection.try_again(heard))
-            return tl::unexpected(connection.failure(status));
+        return tl::unexpected(connection.failure(status));
     }
     return job;
 }
@@ -159,10 +133,13 @@ cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1
     const std::set<std::string> told_before(told.begin(), told.end());
     for (const std::string& warning : untold_warnings(job.warnings(), told_before))
         cli::warn(warning);
-    std::vector<std::string> of_sectors;
+    // Those of the map first: they are few.
+    for (const std::string& warning : untold_warnings(report.map_warnings, {told.begin(), told.end()}))
+        cli::warn(warning);
+    std::vector<std::string> more_warnings;
     for (const auto& [thing, of_thing] : report.warnings)
-        std::ranges::transform(of_thing, std::back_inserter(of_sectors), &JobReport::Warning::sentence);
-    const auto more = untold_warnings(of_sectors, {told.begin(), told.end()});
+        std::ranges::transform(of_thing, std::back_inserter(more_warnings), &JobReport::Warning::sentence);
+    const auto more = untold_warnings(more_warnings, {told.begin(), told.end()});
     if (connection.options.json) {
         for (const std::string& warning : more)
             cli::warn(warning);

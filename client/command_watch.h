@@ -11,13 +11,12 @@ namespace drtv::client {
 using OnProgress = std::function<void(const v1::Job&)>;
 
 struct WatchOptions {
-    double timeout_s = 0;  // 0: without a limit
-    bool quiet = false;    // its end alone is told
+    bool quiet = false;  // its end alone is told
     OnProgress progressed = {};
 };
 
 // The job as it ended; `job` is "12" or "jobs/12". Fails with exit_interrupted when ctrl-C ended the watch,
-// and with exit_timeout when the time was over: then the job goes on.
+// and with exit_timeout when the time was over (end_calls_by): then the job goes on.
 [[nodiscard]] cli::Result<v1::Job> watch_job(ServerConnection& connection,
                                              const std::string& job,
                                              const WatchOptions& options);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
@@ -23,7 +24,10 @@ using Credentials = std::shared_ptr<grpc::ChannelCredentials>;
 cli::Result<std::string> read_pem(const std::string& path) {
     if (path.empty())
         return cli::fail(cli::exit_usage, "TLS needs all three of --tls-ca, --tls-cert and --tls-key");
-    return folder::read_whole(path);
+    auto text = folder::read_whole(path);
+    if (text && text->find("-----BEGIN ") == std::string::npos)
+        return cli::fail(cli::exit_invalid, path + " is no PEM file");
+    return text;
 }
 
 cli::Result<Credentials> credentials(const ConnectionOptions& options) {
@@ -75,7 +79,33 @@ std::optional<std::pair<int, int>> major_and_minor(const std::string& version) {
     return std::pair(major, minor);
 }
 
+// What gRPC says of a way that leads nowhere, in our words.
+std::string unreachable(const std::string& server, const std::string& message) {
+    const auto says = [&](const char* text) { return message.find(text) != std::string::npos; };
+    if (says("andshake failed"))
+        return fmt::format(
+            "cannot reach bakerd at {}: the TLS handshake failed; does it use TLS, and do the "
+            "certificates fit?",
+            server);
+    if (says("DNS resolution failed"))
+        return fmt::format("cannot reach bakerd at {}: there is no such host", server);
+    if (says("Connection refused"))
+        return fmt::format("cannot reach bakerd at {}: is it running?", server);
+    if (says("Socket closed") || says("Connection reset"))
+        return fmt::format(
+            "cannot reach bakerd at {}: it closed the connection; does it use TLS, or is it stopping?",
+            server);
+    return fmt::format("cannot reach bakerd at {}: it does not answer; is it running?", server);
+}
+
 }  // namespace
+
+void limit_time(double seconds) {
+    using std::chrono::system_clock;
+    if (seconds > 0)
+        end_calls_by(system_clock::now() + std::chrono::duration_cast<system_clock::duration>(
+                                               std::chrono::duration<double>(seconds)));
+}
 
 cli::Failure ServerConnection::failure(const grpc::Status& status, cli::ExitCode invalid) const {
     if (interrupted())
@@ -84,9 +114,11 @@ cli::Failure ServerConnection::failure(const grpc::Status& status, cli::ExitCode
     v1::ErrorDetails details;
     const bool from_server =
         details.ParseFromString(status.error_details()) && !details.server_version().empty();
+    if (!from_server && time_is_over())
+        return {cli::exit_timeout,
+                fmt::format("the time is over, and bakerd at {} had not answered", options.server)};
     if (!from_server && status.error_code() == grpc::StatusCode::UNAVAILABLE)
-        return {
-            cli::exit_server, fmt::format("cannot reach bakerd at {}: is it running?", options.server), true};
+        return {cli::exit_server, unreachable(options.server, status.error_message()), true};
     if (!from_server) {
         const int code = static_cast<int>(status.error_code());
         return {

@@ -50,19 +50,19 @@ cli::Result<void> FolderPull::pull() {
     Reconnection reconnection(connection_.options.server);
     for (;;) {
         const std::size_t pulled_before = pulled_.size();
-        auto done = pull_once();
+        auto done = pull_new();
         if (done || !done.error().may_pass || !reconnection.try_again(pulled_.size() > pulled_before))
             return done;
     }
 }
 
-cli::Result<void> FolderPull::pull_once() {
+cli::Result<void> FolderPull::pull_new() {
     const auto wanted = missing_files();
     if (!wanted)
         return tl::unexpected(wanted.error());
     if (wanted->sectors().empty())
         return {};
-    if (auto begun = write_begun(wanted->sectors_size()); !begun)
+    if (auto begun = write_begun(); !begun)
         return begun;
     return stream_sectors(connection_, *wanted, folder_, [this](const v1::Sector& sector) {
         here_.insert(place_of(sector));
@@ -70,9 +70,9 @@ cli::Result<void> FolderPull::pull_once() {
     });
 }
 
-cli::Result<void> FolderPull::write_begun(std::int64_t wanted) {
+cli::Result<void> FolderPull::write_begun() {
     folder::FolderManifest begun = manifest_;
-    begun.unfinished += wanted;
+    begun.pulling = true;
     if (earlier_)
         begun.files.insert(earlier_->files.begin(), earlier_->files.end());
     return folder::write_whole(folder::manifest_path(folder_), folder::manifest_text(begun));

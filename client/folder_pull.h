@@ -23,7 +23,7 @@ class FolderPull {
         ServerConnection& connection, v1::Job job, v1::Map map, std::string folder, bool replace);
 
     // The files of sectors that have been finished since.
-    [[nodiscard]] cli::Result<void> pull();
+    [[nodiscard]] cli::Result<void> pull_new();
 
     // All of the job's files, looked at once more; removes files of earlier pulls that the map no longer has;
     // then writes the manifest. One pull at a time is here in a folder.
@@ -41,13 +41,14 @@ class FolderPull {
           replace_(replace) {}
 
     [[nodiscard]] cli::Result<void> read_earlier();
-    [[nodiscard]] cli::Result<void> pull_once();
+    // As long as it takes a daemon that restarts.
+    [[nodiscard]] cli::Result<void> pull();
     // Those that are done, of which the folder has no right file.
     [[nodiscard]] cli::Result<v1::PullSectorsRequest> missing_files();
     void note_sector(const v1::Sector& sector, v1::PullSectorsRequest& wanted);
     [[nodiscard]] bool has_file(const folder::SectorPlace& place, const folder::ListedFile& listed) const;
     // Until the end the folder's manifest says that it is not whole, and what was there.
-    [[nodiscard]] cli::Result<void> write_begun(std::int64_t wanted);
+    [[nodiscard]] cli::Result<void> write_begun();
     void leave_or_remove_earlier_files();
 
     ServerConnection& connection_;

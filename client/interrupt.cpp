@@ -21,6 +21,7 @@ namespace drtv::client {
 namespace {
 
 std::atomic<bool> interrupt_seen{false};
+std::atomic<Deadline> deadline_of_calls{Deadline::max()};
 std::array<int, 2> wake_pipe = {-1, -1};
 
 // gRPC ends a cancelled call only after the write that is under way, and a line that stands still takes none.
@@ -75,7 +76,17 @@ bool interrupted() {
     return interrupt_seen;
 }
 
+void end_calls_by(Deadline deadline) {
+    deadline_of_calls = deadline;
+}
+
+bool time_is_over() {
+    return std::chrono::system_clock::now() >= deadline_of_calls.load();
+}
+
 InterruptGuard::InterruptGuard(grpc::ClientContext& context, std::string sentence) : context_(context) {
+    if (const Deadline deadline = deadline_of_calls; deadline != Deadline::max())
+        context_.set_deadline(deadline);
     const std::lock_guard lock(open_calls_mutex);
     open_calls.push_back({&context_, std::move(sentence)});
     if (interrupted())

@@ -20,10 +20,10 @@ cli::Result<v1::Job> get_job(ServerConnection& connection, const std::string& jo
 
 cli::Result<cli::ExitCode> end_of(const v1::Job& job) {
     if (job.state() == v1::Job::SUCCEEDED && job.sectors_total() > 0 && job.probes() == 0) {
-        return cli::fail(cli::exit_invalid,
-                         "no probe was placed: no column of the lattice meets ground that faces up, with 1.5 "
-                         "m of air above it; "
-                         "is the map on its side, or inside out?");
+        return cli::fail(
+            cli::exit_invalid,
+            "no probe was placed: no column of the lattice, every 4 m, meets ground that faces up, "
+            "with 1.5 m of air above it; is the map too small, on its side, or inside out?");
     }
     if (job.state() == v1::Job::SUCCEEDED)
         return cli::exit_done;

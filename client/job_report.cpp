@@ -108,7 +108,7 @@ v1::ReachedError JobReport::error() const {
 }
 
 std::int64_t JobReport::warning_count() const {
-    std::int64_t count = 0;
+    auto count = static_cast<std::int64_t>(map_warnings.size());
     for (const auto& [thing, sentences] : warnings)
         count += static_cast<std::int64_t>(sentences.size());
     return count;

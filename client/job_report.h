@@ -40,6 +40,7 @@ class JobReport {
     // no larger.
     [[nodiscard]] v1::ReachedError error() const;
 
+    std::vector<std::string> map_warnings;  // of its import
     // By the thing of the map that they name first ("": none), each sentence once.
     std::map<std::string, std::vector<Warning>> warnings;
     [[nodiscard]] std::int64_t warning_count() const;

@@ -131,8 +131,14 @@ cli::Result<PreparedJob> prepare_job(ServerConnection& connection, const SubmitO
     auto map = upload_map(connection, *local);
     if (!map)
         return tl::unexpected(map.error());
-    if (map->sector_count() == 0)
-        return cli::fail(cli::exit_invalid, "the map has no ground, so there is nothing to bake");
+    if (map->sector_count() == 0) {
+        const bool is_empty = map->survey().triangles() == 0;
+        return cli::fail(
+            cli::exit_invalid,
+            is_empty ? "the map has no ground, so there is nothing to bake: no mesh is in it; was only "
+                       "the selection exported, or nothing of it visible?"
+                     : "the map has no ground, so there is nothing to bake");
+    }
     std::puts((connection.options.json ? map_json_line(*map) : map_text(*map)).c_str());
     std::fflush(stdout);
     for (const std::string& warning : map->warnings())

@@ -129,7 +129,7 @@ std::string one_line(const Job& job) {
     text += reused_text(job);
     if (job.sectors_failed() > 0)
         text += fmt::format(", {} failed", with_thousands(job.sectors_failed()));
-    text += fmt::format(", {} probes", with_thousands(job.probes()));
+    text += ", " + counted(job.probes(), "probe", "probes");
     if (job.has_end_time())
         text += fmt::format(", {}", duration_text(seconds_of(job)));
     return text;

@@ -43,7 +43,8 @@ using Command = std::function<cli::Result<cli::ExitCode>(ServerConnection&)>;
 // Runs the command, once the server is known to be there.
 void when_called(CLI::App& command, Arguments& to, Command run) {
     command.callback([&to, run = std::move(run)] {
-        to.run = [run](ServerConnection& connection) -> cli::Result<cli::ExitCode> {
+        to.run = [&to, run](ServerConnection& connection) -> cli::Result<cli::ExitCode> {
+            limit_time(to.submit.timeout_s);
             if (auto checked = check_server(connection); !checked)
                 return tl::unexpected(checked.error());
             return run(connection);
@@ -114,6 +115,17 @@ void add_map_commands(CLI::App& app, Arguments& to) {
     });
 }
 
+// "12", or the resource's name.
+CLI::Validator job_number_check() {
+    return {[](std::string& text) {
+                const std::string number = text.starts_with("jobs/") ? text.substr(5) : text;
+                const bool is_number = !number.empty() && number.size() < 19 &&
+                                       number.find_first_not_of("0123456789") == std::string::npos;
+                return is_number ? "" : "\"" + text + "\" is no number of a job";
+            },
+            ""};
+}
+
 void add_job_commands(CLI::App& app, Arguments& to) {
     CLI::App* list = app.add_subcommand("list", "All jobs, newest first");
     CLI::App* status = app.add_subcommand("status", "One job, now");
@@ -125,18 +137,17 @@ void add_job_commands(CLI::App& app, Arguments& to) {
     CLI::App* retry = app.add_subcommand("retry", "Bake the sectors again that have failed");
     CLI::App* pull = app.add_subcommand("pull", "Write a job's finished sector files to a folder");
     for (CLI::App* command : {status, watch, wait, report, cancel, retry, pull})
-        command->add_option("JOB", to.job, "Number of the job")->required();
+        command->add_option("JOB", to.job, "Number of the job")->required()->check(job_number_check());
     for (CLI::App* command : {watch, wait})
         add_timeout(*command, to.submit);
     pull->add_option("--out", to.folder, "Folder for the files; made when missing")->required();
     pull->add_flag("--replace", to.submit.replace, "Take a folder that holds sectors of another map");
     when_called(*list, to, run_list);
     when_called(*status, to, [&to](ServerConnection& connection) { return run_status(connection, to.job); });
-    when_called(*watch, to, [&to](ServerConnection& connection) {
-        return run_watch(connection, to.job, {.timeout_s = to.submit.timeout_s});
-    });
+    when_called(
+        *watch, to, [&to](ServerConnection& connection) { return run_watch(connection, to.job, {}); });
     when_called(*wait, to, [&to](ServerConnection& connection) {
-        return run_watch(connection, to.job, {.timeout_s = to.submit.timeout_s, .quiet = true});
+        return run_watch(connection, to.job, {.quiet = true});
     });
     when_called(*report, to, [&to](ServerConnection& connection) { return run_report(connection, to.job); });
     when_called(*retry, to, [&to](ServerConnection& connection) { return run_retry(connection, to.job); });

@@ -1,13 +1,17 @@
 #include "client/map_contents.h"
 
 #include "client/gltf_references.h"
+#include "format/cli/report.h"
 #include "format/folder/sha256.h"
 #include "map_files/limits.h"
 #include "map_files/local_map.h"
 #include "map_files/reference.h"
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -57,6 +61,27 @@ cli::Result<MapContentFile> content_file(const std::string& path, const std::fil
     return file;
 }
 
+// A file that was to be roles.json, as it seems.
+void warn_of_roles_files(const map_files::LocalMap& local) {
+    namespace fs = std::filesystem;
+    std::set<fs::path> folders;
+    for (const std::string& document : local.documents()) {
+        if (const auto place = local.on_disk(document))
+            folders.insert(place->parent_path());
+    }
+    for (const fs::path& folder : folders) {
+        std::error_code code;
+        for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+            std::string name = entry->path().filename().string();
+            std::ranges::transform(
+                name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+            const bool is_meant = name == "roles.json" || name == "role.json";
+            if (is_meant && entry->path().filename() != "roles.json")
+                cli::warn(entry->path().string() + " is not read: did you mean roles.json?");
+        }
+    }
+}
+
 }  // namespace
 
 cli::Result<MapContents> collect_map(const std::vector<std::string>& arguments) {
@@ -64,6 +89,7 @@ cli::Result<MapContents> collect_map(const std::vector<std::string>& arguments) 
     if (!local)
         return cli::fail(cli::exit_unreadable, local.error());
     MapContents contents{{}, local->documents(), local->repeated()};
+    warn_of_roles_files(*local);
     DiskPaths paths;
     for (const std::string& document : local->documents())
         insert_files(*local, document, paths);

@@ -82,7 +82,11 @@ std::string map_text(const v1::Map& map) {
                  {survey.interiors(), "interior", "interiors"},
                  {survey.probe_free_volumes(), "volume without probes", "volumes without probes"},
                  {survey.spacing_volumes(), "volume with a spacing", "volumes with a spacing"}});
-    for (const std::string& line : {objects, lights, helpers}) {
+    const bool has_roles = survey.vegetation_objects() + survey.ignored_nodes() > 0 || !helpers.empty();
+    std::string without = has_roles ? "" : "no bake_role: all of it is static";
+    if (lights.empty())
+        without += std::string(without.empty() ? "" : "; ") + "no lights of its own";
+    for (const std::string& line : {objects, lights, helpers, without}) {
         if (!line.empty())
             text += "\n  " + line;
     }

@@ -17,11 +17,11 @@ std::string counted(std::int64_t number, const std::string& one, const std::stri
 
 std::string duration_text(double seconds) {
     const auto whole = static_cast<std::int64_t>(seconds + 0.5);
-    const std::int64_t hours = whole / 3600;
-    const std::int64_t minutes = whole / 60 % 60;
-    if (hours > 0)
-        return fmt::format("{}:{:02}:{:02}", hours, minutes, whole % 60);
-    return fmt::format("{}:{:02}", whole / 60, whole % 60);
+    if (whole < 60)
+        return fmt::format("{} s", whole);
+    if (whole < 3600)
+        return fmt::format("{} min {} s", whole / 60, whole % 60);
+    return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
 }
 
 }  // namespace drtv::client

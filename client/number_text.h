@@ -12,7 +12,7 @@ namespace drtv::client {
 // "1 file", "2,000 files".
 [[nodiscard]] std::string counted(std::int64_t number, const std::string& one, const std::string& many);
 
-// "1:05", "2:00:00". REQUIRES: the duration is not negative.
+// "46 s", "12 min 46 s", "2 h 5 min". REQUIRES: the duration is not negative.
 [[nodiscard]] std::string duration_text(double seconds);
 
 // In millions, as sizes and rates are told.

@@ -1,5 +1,6 @@
 #include "client/reconnection.h"
 
+#include "client/interrupt.h"
 #include "format/cli/report.h"
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@ bool Reconnection::try_again(bool heard) {
     constexpr std::chrono::milliseconds pause{300};
     if (heard)
         last_contact_ = Clock::now();
-    if (Clock::now() - last_contact_ > patience)
+    if (Clock::now() - last_contact_ > patience || time_is_over() || interrupted())
         return false;
     if (!told_)
         cli::note(fmt::format("lost bakerd at {}; trying again for {} s", server_, patience.count()));

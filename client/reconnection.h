@@ -13,7 +13,7 @@ class Reconnection {
     explicit Reconnection(std::string server) : server_(std::move(server)) {}
 
     // To be asked after each attempt that found nobody; `heard`: something arrived before. Waits for a
-    // moment; false where nothing has arrived for too long.
+    // moment; false where nothing has arrived for too long, or the time is over.
     [[nodiscard]] bool try_again(bool heard);
 
   private:

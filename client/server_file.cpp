@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include <map>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace drtv::client {
@@ -66,6 +68,26 @@ bool is_address(const std::string& server) {
     return server.find(':') != std::string::npos;
 }
 
+// HOST:PORT, or what gRPC knows besides: unix:PATH.
+bool is_well_formed(const std::string& address) {
+    if (address.starts_with("unix:"))
+        return true;
+    const std::size_t colon = address.rfind(':');
+    int port = 0;
+    const char* const end = address.data() + address.size();
+    const auto [stopped, error] = std::from_chars(address.data() + colon + 1, end, port);
+    return colon > 0 && error == std::errc() && stopped == end && port > 0 && port <= 65535 &&
+           address.find('/') == std::string::npos;
+}
+
+cli::Result<ConnectionOptions> checked(ConnectionOptions options) {
+    if (is_well_formed(options.server))
+        return options;
+    return cli::fail(
+        cli::exit_usage,
+        fmt::format("the server '{}' is not HOST:PORT, with a port from 1 to 65535", options.server));
+}
+
 void fill_in(std::string& value, const Entry& entry, const std::string& key) {
     if (const auto found = entry.find(key); value.empty() && found != entry.end())
         value = found->second;
@@ -103,10 +125,10 @@ cli::Result<ConnectionOptions> with_server_file(ConnectionOptions options, const
         fill_in(options.tls_key, entry->second, "tls-key");
         if (options.server.empty())
             return cli::fail(cli::exit_usage, fmt::format("{}: [{}] has no address", path, entry->first));
-        return options;
+        return checked(std::move(options));
     }
     if (is_address(options.server))
-        return options;
+        return checked(std::move(options));
     std::vector<std::string> names;
     for (const auto& [name, unused] : file.entries)
         names.push_back(name);

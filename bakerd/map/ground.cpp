@@ -180,8 +180,15 @@ tl::expected<std::vector<SectorCoordinate>, std::string> sectors_of(const Map& m
         const SectorCoordinate last = sector_of(object.bounds.high.x, object.bounds.high.y);
         const std::size_t sectors = covered(first, last);
         if (sectors > max_sectors) {
-            return tl::unexpected(fmt::format(
-                "object '{}' covers {} sectors, over the limit of {}", object.name, sectors, max_sectors));
+            return tl::unexpected(
+                fmt::format("object '{}' is {:.4g} km x {:.4g} km and covers {} sectors of 64 m, over the "
+                            "limit of {}: was the "
+                            "map made in metres?",
+                            object.name,
+                            (object.bounds.high.x - object.bounds.low.x) / 1000,
+                            (object.bounds.high.y - object.bounds.low.y) / 1000,
+                            sectors,
+                            max_sectors));
         }
         if (sectors == 1) {
             found.insert(first);

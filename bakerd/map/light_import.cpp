@@ -51,4 +51,14 @@ tl::expected<Light, std::string> import_light(const tinygltf::Model& model, int 
     return light;
 }
 
+// Many exported scenes have a sun, from the modeller's own view of them.
+std::string doubt_about(const Light& light) {
+    if (light.kind != LightKind::directional || !shines(light))
+        return "";
+    const std::string name = light.name.empty() ? "a light" : fmt::format("the light '{}'", light.name);
+    return name +
+           " is directional: it is baked as a sun that never moves. Leave it out, with bake_role "
+           "'ignore', where the game has its own";
+}
+
 }  // namespace drtv::map

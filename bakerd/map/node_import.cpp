@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace drtv::map {
@@ -42,6 +43,7 @@ struct Pending {
     glm::dmat4 world_from_parent;
     NodePurpose purpose;
     int group_node = -1;  // that gave it its light group
+    int role_node = -1;   // that gave it its role
     bool hidden = false;  // what would be seen of it, or shine, is not there: probes and volumes are helpers
 };
 
@@ -76,6 +78,8 @@ class NodeImporter {
                 if (!ends)
                     groups_.add(pending.node, pending.purpose.light_group);
             }
+            if (has_role(node))
+                pending.role_node = pending.node;
             if (pending.purpose.role == NodeRole::ignore && has_role(node))
                 ++state_.map.ignored_nodes;
             pending.hidden = pending.hidden || is_hidden(node);
@@ -83,8 +87,15 @@ class NodeImporter {
                 return imported;
             push(stack,
                  node.children,
-                 {-1, world_from_node, pending.purpose, pending.group_node, pending.hidden});
+                 {-1,
+                  world_from_node,
+                  pending.purpose,
+                  pending.group_node,
+                  pending.role_node,
+                  pending.hidden});
         }
+        for (const auto& [node, count] : meshes_of_probe_)
+            warn(state_.map, state_.document.at(shown(node) + ": " + inherited_probe(count)));
         for (const std::string& sentence : unheard_properties(model_))
             warn(state_.map, state_.document.at(sentence));
         groups_.tell_unused([&](int node, const std::string& group) {
@@ -124,8 +135,11 @@ class NodeImporter {
             if (auto light = add_light(pending, world_from_node); !light)
                 return light;
         }
-        if (pending.purpose.role == NodeRole::probe)
+        if (pending.purpose.role == NodeRole::probe) {
+            if (node.mesh >= 0 && pending.role_node != pending.node)
+                ++meshes_of_probe_[pending.role_node];
             return add_probe(pending.node, world_from_node);
+        }
         if (node.mesh < 0 || (pending.hidden && !is_volume(pending.purpose.role)))
             return {};
         const auto mesh = meshes_.index_of(node);
@@ -135,6 +149,8 @@ class NodeImporter {
         const glm::dmat4& world_from_mesh = node.skin >= 0 ? world_from_gltf : world_from_node;
         if (*mesh == no_mesh)
             return {};
+        if (pending.purpose.role == NodeRole::spacing && shines(state_.map.meshes[*mesh], state_.map))
+            warn(state_.map, state_.document.at(shown(pending.node) + ": " + dark_volume));
         if (pending.group_node >= 0 && !is_volume(pending.purpose.role) &&
             shines(state_.map.meshes[*mesh], state_.map))
             groups_.add_light(pending.group_node);
@@ -209,20 +225,10 @@ class NodeImporter {
         light->name = node.name;
         light->light_group = light_group_of(pending.purpose.light_group, state_.map);
         groups_.add_light(pending.group_node);
-        warn_of_sun(*light);
+        if (const std::string doubt = doubt_about(*light); !doubt.empty())
+            warn(state_.map, state_.document.at(doubt));
         state_.map.lights.push_back(std::move(*light));
         return {};
-    }
-
-    // Many exported scenes have one, from the modeller's own view of them.
-    void warn_of_sun(const Light& light) const {
-        if (light.kind != LightKind::directional || !shines(light))
-            return;
-        const std::string name = light.name.empty() ? "a light" : fmt::format("the light '{}'", light.name);
-        warn(
-            state_.map,
-            state_.document.at(name + " is directional: it is baked as a sun that never moves. Leave it out, "
-                                      "with bake_role 'ignore', where the game has its own"));
     }
 
     const ImportState& state_;
@@ -231,6 +237,7 @@ class NodeImporter {
     MeshImporter meshes_;
     const std::vector<bool> coarser_;  // by node
     NamedGroups groups_;
+    std::map<int, std::size_t> meshes_of_probe_;  // that inherit its role, by the node that has it
 };
 
 }  // namespace

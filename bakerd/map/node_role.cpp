@@ -1,12 +1,14 @@
 #include "bakerd/map/node_role.h"
 
 #include "bakerd/map/warning.h"
+#include "format/spelling/suggestion.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 namespace drtv::map {
 namespace {
@@ -31,20 +33,25 @@ constexpr double max_spacing_m = 8;
 constexpr std::size_t max_light_group_name = 63;
 
 tl::expected<void, std::string> read_role(const tinygltf::Value& value, NodeRole& role) {
+    constexpr const char* known = "static, vegetation, ignore, probe, no_probes, interior";
     if (!value.IsString())
-        return tl::unexpected(std::string("bake_role must be a string"));
+        return tl::unexpected(fmt::format("bake_role must be a string, one of {}", known));
     const std::string& name = value.Get<std::string>();
     const auto* found = std::ranges::find(role_names, name, &RoleName::name);
-    if (found == role_names.end())
-        return tl::unexpected(fmt::format(
-            "bake_role '{}' is not one of static, vegetation, ignore, probe, no_probes, interior", name));
+    if (found == role_names.end()) {
+        std::vector<std::string> names;
+        for (const RoleName& role_name : role_names)
+            names.emplace_back(role_name.name);
+        return tl::unexpected(
+            fmt::format("bake_role '{}' is not one of {}{}", name, known, spelling::suggestion(name, names)));
+    }
     role = found->role;
     return {};
 }
 
 tl::expected<float, std::string> read_spacing(const tinygltf::Value& value) {
     if (!value.IsNumber())
-        return tl::unexpected(std::string("bake_spacing must be a number"));
+        return tl::unexpected(std::string("bake_spacing must be a number, of metres"));
     const double spacing_m = value.GetNumberAsDouble();
     if (!(spacing_m >= min_spacing_m && spacing_m <= max_spacing_m))
         return tl::unexpected(fmt::format(
@@ -110,6 +117,15 @@ tl::expected<void, std::string> read_purpose(const tinygltf::Node& node, NodePur
             purpose.role = NodeRole::spacing;
     }
     return {};
+}
+
+std::string inherited_probe(std::size_t meshes) {
+    const bool is_one = meshes == 1;
+    return fmt::format(
+        "{} below it {} its bake_role 'probe', and {} in no light's way: set it on the probe alone",
+        is_one ? "a mesh" : fmt::format("{} meshes", meshes),
+        is_one ? "inherits" : "inherit",
+        is_one ? "stands" : "stand");
 }
 
 }  // namespace drtv::map

@@ -42,4 +42,12 @@ struct NodePurpose {
     return role == NodeRole::no_probes || role == NodeRole::interior || role == NodeRole::spacing;
 }
 
+// Ends of sentences about a node. So many meshes below it inherit its role of a probe.
+[[nodiscard]] std::string inherited_probe(std::size_t meshes);
+// A mesh that glows, with a spacing alone.
+inline constexpr const char* dark_volume =
+    "bake_spacing without a bake_role makes it a volume, which does not glow: add bake_role 'static' where "
+    "it "
+    "should";
+
 }  // namespace drtv::map

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 namespace drtv::map {
 namespace {
@@ -48,6 +49,57 @@ void tell_of(const Things& things,
     }
 }
 
+struct Seen {
+    std::size_t first;
+    std::size_t count;
+};
+
+std::string who(const std::vector<tinygltf::Node>& nodes, const Seen& seen) {
+    const std::string first = shown("node", nodes[seen.first].name, seen.first);
+    return seen.count == 1 ? first + " says" : fmt::format("{} and {} more say", first, seen.count - 1);
+}
+
+// Each key once: an artist who misspells it does so on every object.
+void tell_misspelled(const std::vector<tinygltf::Node>& nodes, std::vector<std::string>& sentences) {
+    std::map<std::string, Seen> seen;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (!nodes[n].extras.IsObject())
+            continue;
+        for (const std::string& key : nodes[n].extras.Keys()) {
+            if (property_meant(key))
+                ++seen.try_emplace(key, Seen{n, 0}).first->second.count;
+        }
+    }
+    for (const auto& [key, where] : seen)
+        sentences.push_back(fmt::format(
+            "{} '{}', which is not read: did you mean {}?", who(nodes, where), key, *property_meant(key)));
+}
+
+// Words of ours under keys that are not: told where no node has a role, for other programs use them as well.
+void tell_words_of_ours(const std::vector<tinygltf::Node>& nodes, std::vector<std::string>& sentences) {
+    constexpr std::array<std::string_view, 5> roles = {
+        "vegetation", "ignore", "probe", "no_probes", "interior"};
+    const auto is_role = [&](std::string_view word) { return std::ranges::find(roles, word) != roles.end(); };
+    std::map<std::string, Seen> seen;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const tinygltf::Value& extras = nodes[n].extras;
+        if (!extras.IsObject())
+            continue;
+        if (extras.Has("bake_role"))
+            return;
+        for (const std::string& key : extras.Keys()) {
+            const tinygltf::Value& value = extras.Get(key);
+            const bool names_role =
+                value.IsString() && is_role(value.Get<std::string>()) && !property_meant(key);
+            if (names_role || is_role(key))
+                ++seen.try_emplace(key, Seen{n, 0}).first->second.count;
+        }
+    }
+    for (const auto& [key, where] : seen)
+        sentences.push_back(
+            fmt::format("{} '{}', and no node has a bake_role: did you mean that?", who(nodes, where), key));
+}
+
 }  // namespace
 
 bool is_property(std::string_view key) {
@@ -67,17 +119,8 @@ std::optional<std::string_view> property_meant(std::string_view key) {
 
 std::vector<std::string> unheard_properties(const tinygltf::Model& model) {
     std::vector<std::string> sentences;
-    for (std::size_t n = 0; n < model.nodes.size(); ++n) {
-        if (!model.nodes[n].extras.IsObject())
-            continue;
-        for (const std::string& key : model.nodes[n].extras.Keys()) {
-            if (const auto meant = property_meant(key))
-                sentences.push_back(fmt::format("{} says '{}', which is not read: did you mean {}?",
-                                                shown("node", model.nodes[n].name, n),
-                                                key,
-                                                *meant));
-        }
-    }
+    tell_misspelled(model.nodes, sentences);
+    tell_words_of_ours(model.nodes, sentences);
     const std::string on_object = "set it on the object, not on its data";
     tell_of(model.lights, "light", on_object, sentences);
     tell_of(model.meshes, "mesh", on_object, sentences);

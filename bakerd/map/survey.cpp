@@ -109,7 +109,10 @@ std::vector<std::string> doubts_about(const Survey& survey) {
     if (side > large_m)
         doubts.push_back(
             fmt::format("the map is {:.1f} km across: was it made in metres? A sector is 64 m", side / 1000));
-    if (size.z > tall_m && size.z > side)
+    // Of a map that lies as it should most of its ground faces up, however tall it is.
+    const bool is_upright =
+        size.z > 2 * std::min(size.x, size.y) && survey.up_m2 < double{size.z} * double{side} / 4;
+    if (size.z > tall_m && (size.z > side || is_upright))
         doubts.push_back(
             fmt::format("the map is {:.0f} m across and {:.0f} m tall: {}", side, size.z, remedy));
     else if (survey.down_m2 > often * survey.up_m2)

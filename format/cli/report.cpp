@@ -66,8 +66,8 @@ int end_program(const Result<ExitCode>& ended) {
     const ExitCode code = ended ? *ended : complain(ended.error());
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return code;
-    const ExitCode unwritten = complain({exit_unreadable, "cannot write to standard output"});
-    return std::max(code, unwritten);
+    // Whatever else was found: what told it is cut off.
+    return complain({exit_unreadable, "cannot write to standard output"});
 }
 
 }  // namespace drtv::cli

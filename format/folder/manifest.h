@@ -1,5 +1,5 @@
-// sectors.json: what a folder of sector files holds, and of which bake it is. It is written last, so that a
-// folder with a manifest is whole (format/sectors.schema.json).
+// sectors.json: what a folder of sector files holds, and of which bake it is (format/sectors.schema.json). It
+// says of itself when a pull has begun; that all is there it says last.
 #pragma once
 
 #include "cli/failure.h"
@@ -36,6 +36,7 @@ struct FolderManifest {
     std::string format_version;   // "1.3"
     std::string server_version;   // "0.1.0"
     std::int64_t unfinished = 0;  // sectors of the job that had no file
+    bool pulling = false;         // a pull has begun, and not come to its end
     std::map<SectorPlace, ListedFile> files;
 };
 
@@ -54,12 +55,18 @@ struct FolderManifest {
 
 [[nodiscard]] std::string manifest_text(const FolderManifest& manifest);
 
+// What is looked at of a file.
+enum class FileCheck : std::uint8_t { size, bytes };
+
 // Empty where the file is as it is listed; else the end of a sentence that begins with it.
-[[nodiscard]] std::string difference_from_list(const std::string& path, const ListedFile& listed);
+[[nodiscard]] std::string difference_from_list(const std::string& path,
+                                               const ListedFile& listed,
+                                               FileCheck check = FileCheck::bytes);
 
 // What of the listed files is not as the manifest says: one sentence each, and of files beside them that it
 // does not list.
 [[nodiscard]] std::vector<std::string> check_listed_files(const std::string& folder,
-                                                          const FolderManifest& manifest);
+                                                          const FolderManifest& manifest,
+                                                          FileCheck check = FileCheck::bytes);
 
 }  // namespace drtv::folder

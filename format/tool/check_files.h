@@ -23,6 +23,20 @@ struct CheckedFile {
     std::optional<RegionSector> region;  // what its neighbours are held against, where it can be read
 };
 
+enum class FolderState {
+    whole,        // its manifest lists what is there
+    no_manifest,  // it was not pulled
+    pulling,      // a pull has begun, and not come to its end
+    unfinished,   // the job had not ended
+    wrong,        // its manifest says something else than is there
+};
+
+struct CheckedFolder {
+    std::string folder;
+    FolderState state = FolderState::whole;
+    std::vector<cli::Failure> problems;  // why it is not whole
+};
+
 // Not checked yet.
 [[nodiscard]] CheckedFile file_to_check(const std::string& path);
 

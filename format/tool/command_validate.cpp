@@ -52,12 +52,9 @@ bool find_files(const std::vector<std::string>& paths, std::vector<CheckedFile>&
     return complete;
 }
 
-// The worst of what the manifests of the files' folders tell. A file that is named itself stands for itself
-// alone.
-cli::ExitCode check_manifests(const std::vector<CheckedFile>& files,
-                              const std::vector<std::string>& paths,
-                              bool warnings_as_errors) {
-    constexpr std::size_t most_told = 10;
+// Of the files' folders. A file that is named itself stands for itself alone.
+std::set<std::string> folders_of(const std::vector<CheckedFile>& files,
+                                 const std::vector<std::string>& paths) {
     std::set<std::string> folders;
     for (const CheckedFile& file : files) {
         if (std::ranges::find(paths, file.path) != paths.end())
@@ -65,29 +62,59 @@ cli::ExitCode check_manifests(const std::vector<CheckedFile>& files,
         const std::string folder = fs::path(file.path).parent_path().string();
         folders.insert(folder.empty() ? "." : folder);
     }
-    cli::ExitCode exit_code = cli::exit_done;
-    for (const std::string& folder : folders) {
-        const auto manifest = folder::read_manifest(folder);
-        if (!manifest) {
-            exit_code = std::max(exit_code, cli::complain(manifest.error()));
-            continue;
-        }
-        if (!*manifest)
-            continue;
-        const std::vector<std::string> sentences = folder::check_listed_files(folder, **manifest);
-        for (std::size_t n = 0; n < std::min(sentences.size(), most_told); ++n)
-            exit_code = std::max(exit_code, cli::complain({cli::exit_invalid, sentences[n]}));
-        if (sentences.size() > most_told)
-            cli::complain({cli::exit_invalid,
-                           folder::manifest_path(folder) + ": and " +
-                               std::to_string(sentences.size() - most_told) + " more files"});
-        if ((*manifest)->unfinished > 0) {
-            cli::warn(folder::manifest_path(folder) + ": the job was not finished when it was pulled: " +
-                      std::to_string((*manifest)->unfinished) + " sectors had no file");
-            if (warnings_as_errors)
-                exit_code = std::max(exit_code, cli::exit_invalid);
-        }
+    return folders;
+}
+
+CheckedFolder check_folder(const std::string& folder, folder::FileCheck check) {
+    const auto manifest = folder::read_manifest(folder);
+    if (!manifest)
+        return {folder, FolderState::wrong, {manifest.error()}};
+    if (!*manifest)
+        return {folder,
+                FolderState::no_manifest,
+                {{cli::exit_invalid, folder + " has no manifest, sectors.json"}}};
+    CheckedFolder checked{folder, FolderState::whole, {}};
+    if ((*manifest)->pulling) {
+        checked.state = FolderState::pulling;
+        checked.problems.push_back(
+            {cli::exit_invalid,
+             folder::manifest_path(folder) + ": a pull has begun, and not come to its end: pull again"});
+        return checked;
     }
+    for (const std::string& sentence : folder::check_listed_files(folder, **manifest, check))
+        checked.problems.push_back({cli::exit_invalid, sentence});
+    if (!checked.problems.empty()) {
+        checked.state = FolderState::wrong;
+    } else if ((*manifest)->unfinished > 0) {
+        checked.state = FolderState::unfinished;
+        checked.problems.push_back({cli::exit_invalid,
+                                    folder::manifest_path(folder) +
+                                        ": the job was not finished when it was pulled: " +
+                                        std::to_string((*manifest)->unfinished) + " sectors had no file"});
+    }
+    return checked;
+}
+
+// Tells what is wrong, and gives the worst of it.
+cli::ExitCode tell_folder(const CheckedFolder& checked, const ValidateRequest& request) {
+    constexpr std::size_t most_told = 10;
+    const bool is_doubtful =
+        checked.state == FolderState::no_manifest || checked.state == FolderState::unfinished;
+    const bool must_be_whole =
+        request.whole || (request.warnings_as_errors && checked.state == FolderState::unfinished);
+    if (checked.state == FolderState::no_manifest && !must_be_whole)
+        return cli::exit_done;
+    cli::ExitCode exit_code = cli::exit_done;
+    for (std::size_t n = 0; n < std::min(checked.problems.size(), most_told); ++n) {
+        if (is_doubtful && !must_be_whole)
+            cli::warn(checked.problems[n].sentence);
+        else
+            exit_code = std::max(exit_code, cli::complain(checked.problems[n]));
+    }
+    if (checked.problems.size() > most_told)
+        cli::complain({cli::exit_invalid,
+                       folder::manifest_path(checked.folder) + ": and " +
+                           std::to_string(checked.problems.size() - most_told) + " more files"});
     return exit_code;
 }
 
@@ -106,7 +133,7 @@ cli::Result<cli::ExitCode> run_validate(const ValidateRequest& request) {
     std::vector<CheckedFile> files;
     cli::ExitCode exit_code = find_files(request.paths, files) ? cli::exit_done : cli::exit_unreadable;
     check_files(files, options, request.neighbours);
-    const std::size_t folders = request.neighbours ? check_regions(files, options) : 0;
+    const std::size_t regions = request.neighbours ? check_regions(files, options) : 0;
 
     ValidateReport report(request.json);
     for (const CheckedFile& file : files) {
@@ -120,10 +147,14 @@ cli::Result<cli::ExitCode> run_validate(const ValidateRequest& request) {
             exit_code = cli::exit_invalid;
         report.add(file, valid);
     }
-    report.finish(folders);
-    return request.quick
-               ? exit_code
-               : std::max(exit_code, check_manifests(files, request.paths, request.warnings_as_errors));
+    std::vector<CheckedFolder> folders;
+    const auto check = request.quick ? folder::FileCheck::size : folder::FileCheck::bytes;
+    for (const std::string& folder : folders_of(files, request.paths))
+        folders.push_back(check_folder(folder, check));
+    for (const CheckedFolder& folder : folders)
+        exit_code = std::max(exit_code, tell_folder(folder, request));
+    report.finish(regions, folders);
+    return exit_code;
 }
 
 }  // namespace drtv::tool

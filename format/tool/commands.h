@@ -20,6 +20,7 @@ struct ValidateRequest {
     bool quick = false;
     bool neighbours = false;
     bool warnings_as_errors = false;
+    bool whole = false;  // a folder needs a manifest that says that it is whole
 };
 cli::Result<cli::ExitCode> run_validate(const ValidateRequest& request);
 

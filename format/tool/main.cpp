@@ -49,6 +49,8 @@ void add_checks(CLI::App& app, CommandLine& line) {
         ->excludes(quick);
     validate->add_flag(
         "--warnings-as-errors", request.warnings_as_errors, "A file with a warning is invalid too");
+    validate->add_flag(
+        "--whole", request.whole, "A folder without a manifest, or of an unfinished job, is invalid too");
     validate
         ->add_option("--ignore", request.ignored, "Leave out findings of this code; drtv issues lists them")
         ->delimiter(',')

@@ -63,6 +63,33 @@ void append_file(kit::JsonWriter& json, const CheckedFile& file, bool valid) {
     json.end_object();
 }
 
+const char* name_of(FolderState state) {
+    switch (state) {
+        case FolderState::whole:
+            return "whole";
+        case FolderState::no_manifest:
+            return "no manifest";
+        case FolderState::pulling:
+            return "pulling";
+        case FolderState::unfinished:
+            return "unfinished";
+        case FolderState::wrong:
+            break;
+    }
+    return "wrong";
+}
+
+void append_folder(kit::JsonWriter& json, const CheckedFolder& folder) {
+    json.begin_object();
+    json.member("folder", folder.folder);
+    json.member("state", name_of(folder.state));
+    json.key("problems").begin_array();
+    for (const cli::Failure& problem : folder.problems)
+        json.value(problem.sentence);
+    json.end_array();
+    json.end_object();
+}
+
 // "", ", 1 warning" or ", 2 warnings".
 std::string warnings_text(std::size_t warnings) {
     if (warnings == 0)
@@ -86,8 +113,12 @@ void ValidateReport::add(const CheckedFile& file, bool valid) {
         print_file(file);
 }
 
-void ValidateReport::finish(std::size_t folders) {
+void ValidateReport::finish(std::size_t regions, const std::vector<CheckedFolder>& folders) {
     if (as_json_) {
+        json_.end_array();
+        json_.key("folders").begin_array();
+        for (const CheckedFolder& folder : folders)
+            append_folder(json_, folder);
         json_.end_array();
         json_.count("checked", checked_);
         json_.count("invalid", invalid_);
@@ -101,8 +132,12 @@ void ValidateReport::finish(std::size_t folders) {
                 checked_ == 1 ? "" : "s",
                 invalid_,
                 warnings_text(warnings_).c_str());
-    if (folders > 1)
-        std::printf("%zu folders, the borders of each by itself\n", folders);
+    if (regions > 1)
+        std::printf("%zu folders, the borders of each by itself\n", regions);
+    for (const CheckedFolder& folder : folders) {
+        if (folder.state != FolderState::whole && folder.state != FolderState::no_manifest)
+            std::printf("%s is not whole\n", folder.folder.c_str());
+    }
 }
 
 }  // namespace drtv::tool

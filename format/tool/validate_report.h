@@ -15,9 +15,9 @@ class ValidateReport {
     // A file that could be read. Sentences go to stdout at once.
     void add(const CheckedFile& file, bool valid);
 
-    // The end of the sentences, or all of the JSON, to stdout. `folders`: how many were checked as regions.
-    // REQUIRES: nothing was finished before.
-    void finish(std::size_t folders);
+    // The end of the sentences, or all of the JSON, to stdout. `regions`: how many folders were checked each
+    // by its borders. REQUIRES: nothing was finished before.
+    void finish(std::size_t regions, const std::vector<CheckedFolder>& folders);
 
   private:
     const bool as_json_;

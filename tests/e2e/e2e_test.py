@@ -632,7 +632,7 @@ class Client(FarmTest):
         )
         self.assert_sentence(
             submitted,
-            "job 1 has not ended after 0.5 s, and goes on; come back with: bake watch 1",
+            "the time is over: job 1 goes on; come back with: bake watch 1",
             status=TIMEOUT,
         )
         watched = self.farm.bake(daemon, "--json", "watch", "1", "--timeout", "0.5")
@@ -1046,7 +1046,7 @@ class Pull(FarmTest):
             done = self.farm.bake(daemon, "pull", "1", "--out", folder, timeout=60)
             self.assert_sentence(done, "cannot write", "sector_", status=UNREADABLE)
             # What it began is told.
-            self.assertGreater(json.load(open(folder + "/sectors.json", encoding="utf-8"))["unfinished"], 0)
+            self.assertTrue(json.load(open(folder + "/sectors.json", encoding="utf-8"))["pulling"])
 
     def test_pulls_of_two_regions_into_one_folder_list_each_other(self):
         daemon = self.farm.daemon()
@@ -1157,6 +1157,51 @@ class LettingGo(FarmTest):
             self.assertEqual(watch.returncode, TIMEOUT, out + err)
         finally:
             daemon.process.send_signal(signal.SIGCONT)
+
+    def test_the_time_is_kept_by_a_daemon_that_stands_still_or_is_gone(self):
+        daemon = self.farm.daemon()
+        self.assertEqual(self.farm.bake(daemon, "submit", self.island()).returncode, 0)
+        daemon.process.send_signal(signal.SIGSTOP)
+        try:
+            begin = time.monotonic()
+            done = self.farm.bake(daemon, "wait", "1", "--timeout", "1")
+            self.assert_sentence(done, "the time is over, and bakerd at", "had not answered", status=TIMEOUT)
+            self.assertLess(time.monotonic() - begin, 5)
+        finally:
+            daemon.process.send_signal(signal.SIGCONT)
+        pull = ("submit", self.island(), "--pull", self.farm.path("pulled"), "--timeout", "4")
+        submit = self.farm.start_bake(daemon, *pull)
+        wait_until(lambda: os.path.exists(self.farm.path("pulled/sectors.json")), what="the pull")
+        begin = time.monotonic()
+        daemon.process.kill()
+        out, err = submit.communicate(timeout=30)
+        self.assertEqual(submit.returncode, TIMEOUT, out + err)
+        self.assertIn("is away", err)
+        self.assertLess(time.monotonic() - begin, 20)
+
+    def test_what_stands_in_the_way_to_the_daemon_is_told(self):
+        daemon = self.farm.daemon()
+        key, certificate = self.farm.path("key.pem"), self.farm.path("cert.pem")
+        curve = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes")
+        subprocess.run(
+            ["openssl", "req", "-x509", *curve, "-subj", "/CN=x", "-keyout", key, "-out", certificate],
+            check=True,
+            capture_output=True,
+        )
+        secured = ("--tls-ca", certificate, "--tls-cert", certificate, "--tls-key", key)
+        self.assert_sentence(
+            self.farm.bake(daemon, *secured, "list"), "the TLS handshake failed", status=SERVER
+        )
+        done = self.farm.bake(daemon, *secured[:-1], __file__, "list")
+        self.assert_sentence(done, __file__, "is no PEM file", status=INVALID)
+        for server, status, words in (
+            ("http://127.0.0.1:7447", USAGE, "is not HOST:PORT"),
+            ("127.0.0.1:99999", USAGE, "a port from 1 to 65535"),
+            ("127.0.0.1:1", SERVER, "is it running?"),
+            ("nowhere.invalid:7447", SERVER, "there is no such host"),
+        ):
+            done = self.farm.run("bake", "--server", server, "list", timeout=60)
+            self.assert_sentence(done, server, words, status=status)
 
     def test_loopback_never_goes_through_a_proxy(self):
         daemon = self.farm.daemon()
@@ -1377,7 +1422,7 @@ class Incremental(FarmTest):
         done = self.farm.bake(daemon, "plan", moved, "--png", under, "--under", under)
         self.assert_sentence(done, "would replace the picture of --under", status=USAGE)
         text = self.farm.bake(daemon, "plan", moved, *REGION, *FEW_RAYS).stdout
-        self.assertIn(f"{plan['rebakes']} to bake, about 0:", text)
+        self.assertIn(f"{plan['rebakes']} to bake, about ", text)
         self.assertIn("the_palm", text)
 
         job = self.job_of(daemon, moved, *REGION, *FEW_RAYS)

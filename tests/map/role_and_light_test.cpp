@@ -44,6 +44,37 @@ TEST(Role, ProbeStandsAtItsOrigin) {
     EXPECT_EQ(map.probes[0].name, "here");
 }
 
+TEST(Role, MeshesThatBecomeProbesByInheritanceAreTold) {
+    GltfBuilder b;
+    b.place(ground(1));
+    const int mesh = b.add_mesh(ground(1));
+    const int one = b.add_node({.mesh = mesh, .name = "one"});
+    const int two = b.add_node({.mesh = mesh, .name = "two"});
+    b.add_node({.children = {one, two}, .name = "hut", .role = "probe"});
+    b.add_node({.mesh = mesh, .name = "marker", .role = "probe"});
+    const Map map = expect_accepted(b.import());
+    ASSERT_EQ(map.warnings.size(), 1u);
+    EXPECT_NE(map.warnings[0].find("('hut'): 2 meshes below it inherit its bake_role 'probe'"),
+              std::string::npos)
+        << map.warnings[0];
+}
+
+TEST(Role, ASpacingAloneOnWhatGlowsIsTold) {
+    GltfBuilder b;
+    b.place(ground(1));
+    const int material = b.add_material({.name = "ember"});
+    b.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
+    const int mesh = b.add_mesh(box({0, 0, 0}, {1, 1, 1}), material);
+    b.add_node({.mesh = mesh, .name = "ember", .spacing = 2});
+    b.add_node({.mesh = mesh, .name = "both", .role = "static", .spacing = 2});
+    const Map map = expect_accepted(b.import());
+    const auto is_told = [](const std::string& warning) {
+        return warning.find("bake_spacing without a bake_role") != std::string::npos;
+    };
+    ASSERT_EQ(std::ranges::count_if(map.warnings, is_told), 1);
+    EXPECT_NE(std::ranges::find_if(map.warnings, is_told)->find("('ember')"), std::string::npos);
+}
+
 TEST(Role, VolumesAreInWorldSpace) {
     GltfBuilder b;
     b.add_node({.mesh = b.add_mesh(triangle({1, 2, 3}, {2, 2, 3}, {1, 3, 3})),

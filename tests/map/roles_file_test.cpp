@@ -144,12 +144,28 @@ TEST(Properties, WhereNobodyReadsThemAreToldWithARemedy) {
         SCOPED_TRACE(key);
         const std::string meant = std::string("map.gltf: the node 'hut' says '") + key +
                                   "', which is not read: did you mean bake_role?";
-        const Sentences told = warnings([&](Json& j) { j["nodes"][3]["extras"][key] = "ignore"; });
+        const Sentences told = warnings([&](Json& j) { j["nodes"][3]["extras"][key] = 1; });
         EXPECT_EQ(told.size(), std::string(key) == "bake_rules" ? 0u : 1u);
         if (!told.empty()) {
             EXPECT_EQ(told[0], meant);
         }
     }
+    // Once for all objects.
+    const Sentences of_two = warnings([](Json& j) {
+        j["nodes"][2]["extras"]["bakerole"] = j["nodes"][3]["extras"]["bakerole"] = "ignore";
+    });
+    ASSERT_EQ(of_two.size(), 1u);
+    EXPECT_NE(of_two[0].find("and 1 more say 'bakerole'"), std::string::npos) << of_two[0];
+    // Words that other programs use as well: only where no node has a role.
+    const auto say_role = [](Json& j) { j["nodes"][3]["extras"]["role"] = "vegetation"; };
+    EXPECT_EQ(
+        warnings(say_role),
+        Sentences{"map.gltf: the node 'hut' says 'role', and no node has a bake_role: did you mean that?"});
+    EXPECT_EQ(warnings([](Json& j) { j["nodes"][3]["extras"]["vegetation"] = true; }).size(), 1u);
+    EXPECT_TRUE(warnings([&](Json& j) {
+                    say_role(j);
+                    j["nodes"][2]["extras"]["bake_role"] = "static";
+                }).empty());
     EXPECT_TRUE(
         warnings([](Json& j) {
             j["nodes"][3]["extras"] = {{"bake_role", "ignore"}, {"role", "x"}, {"light", 1}, {"bake", 1}};

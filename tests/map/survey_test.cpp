@@ -113,6 +113,16 @@ TEST(Survey, DoubtsAboutUnitsAndSides) {
     told(doubts(square(12'000)), "12.0 km across");
     // A wall of a landscape.
     told(doubts(quad({-500, 0, 0}, {500, 0, 0}, {500, 2000, -100}, {-500, 2000, -100})), "2000 m tall");
+    // A square map on its side, from which things stick out; and a tower that stands.
+    GltfBuilder sideways;
+    sideways.place(quad({0, 0, 0}, {150, 0, 0}, {150, 150, 0}, {0, 150, 0}));
+    sideways.place(box({50, 50, 0}, {60, 60, 10}));
+    told(map::doubts_about(survey_of(sideways)), "150 m tall");
+    GltfBuilder tower;
+    tower.place(square(60));
+    tower.place(box({0, 0, 0}, {60, 300, 60}));
+    tower.place(box({-200, 0, -200}, {200, 0.1f, 200}));
+    EXPECT_TRUE(map::doubts_about(survey_of(tower)).empty());
     GltfBuilder turned;
     turned.place(square(64, false));
     turned.place(box({0, 0, 0}, {3, 3, 3}));
