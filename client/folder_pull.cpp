@@ -14,6 +14,7 @@
 #include <grpcpp/grpcpp.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -62,7 +63,7 @@ cli::Result<void> FolderPull::pull_new() {
         return tl::unexpected(wanted.error());
     if (wanted->sectors().empty())
         return {};
-    if (auto begun = write_begun(); !begun)
+    if (auto begun = begin(); !begun)
         return begun;
     return stream_sectors(connection_, *wanted, folder_, [this](const v1::Sector& sector) {
         here_.insert(place_of(sector));
@@ -70,7 +71,22 @@ cli::Result<void> FolderPull::pull_new() {
     });
 }
 
+cli::Result<void> FolderPull::begin() {
+    if (has_begun_)
+        return {};
+    if (lock_)
+        return write_begun();
+    const auto lock = FolderLock::take(folder_);
+    if (!lock)
+        return tl::unexpected(lock.error());
+    return write_begun();
+}
+
 cli::Result<void> FolderPull::write_begun() {
+    // Another pull may have come to its end since.
+    if (auto read = read_earlier(); !read)
+        return read;
+    has_begun_ = true;
     folder::FolderManifest begun = manifest_;
     begun.pulling = true;
     if (earlier_)
@@ -79,9 +95,16 @@ cli::Result<void> FolderPull::write_begun() {
 }
 
 cli::Result<void> FolderPull::finish() {
-    const auto lock = FolderLock::take(folder_);
+    auto lock = FolderLock::take(folder_);
     if (!lock)
         return tl::unexpected(lock.error());
+    lock_.emplace(std::move(*lock));
+    auto done = complete();
+    lock_.reset();
+    return done;
+}
+
+cli::Result<void> FolderPull::complete() {
     // Another pull may have been here since.
     if (auto read = read_earlier(); !read)
         return read;
@@ -90,6 +113,7 @@ cli::Result<void> FolderPull::finish() {
     if (auto pulled = pull(); !pulled)
         return pulled;
     leave_or_remove_earlier_files();
+    warn_of_strangers();
     folder::remove_leftovers(folder_);
     if (auto synced = folder::sync_folder(folder_); !synced)
         return synced;
@@ -141,6 +165,7 @@ void FolderPull::leave_or_remove_earlier_files() {
     const bool stays =
         folder::are_of_one_map(*earlier_, manifest_) && (job_.has_region() || manifest_.unfinished > 0);
     std::int64_t changed = 0;
+    std::int64_t left = 0;
     for (const auto& [place, file] : earlier_->files) {
         if (manifest_.files.contains(place))
             continue;
@@ -150,17 +175,45 @@ void FolderPull::leave_or_remove_earlier_files() {
             changed += fs::exists(path, code) ? 1 : 0;
             continue;
         }
-        if (stays)
+        if (stays) {
             manifest_.files[place] = file;
-        else
+            ++left;
+        } else {
             removed_ += fs::remove(path, code) ? 1 : 0;
+        }
     }
+    if (left > 0 && earlier_->settings != manifest_.settings)
+        cli::warn(fmt::format("{} in {} stay, and were baked with other settings",
+                              counted(left, "file of an earlier pull", "files of earlier pulls"),
+                              folder_));
     if (changed > 0)
         cli::warn(
             fmt::format("{} sector files in {} are no longer part of the map, and stay: somebody changed "
                         "them since they were pulled",
                         changed,
                         folder_));
+}
+
+// Files that no pull has listed, which a game would load all the same.
+void FolderPull::warn_of_strangers() const {
+    std::int64_t strangers = 0;
+    std::string first;
+    std::error_code code;
+    std::set<std::string> listed;
+    for (const auto& [place, file] : manifest_.files)
+        listed.insert(folder::sector_file_name(place.second, place.first));
+    for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code)) {
+        const std::string name = entry->path().filename().string();
+        if (entry->path().extension() != ".drtv" || listed.contains(name))
+            continue;
+        first = strangers == 0 ? name : std::min(first, name);
+        ++strangers;
+    }
+    if (strangers > 0)
+        cli::warn(fmt::format("{} in {} of no pull, the first {}: drtv validate refuses the folder with them",
+                              counted(strangers, "sector file is", "sector files are"),
+                              folder_,
+                              first));
 }
 
 void FolderPull::report() const {

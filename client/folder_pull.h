@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/connection.h"
+#include "client/folder_lock.h"
 #include "format/cli/failure.h"
 #include "format/folder/manifest.h"
 
@@ -47,15 +48,20 @@ class FolderPull {
     [[nodiscard]] cli::Result<v1::PullSectorsRequest> missing_files();
     void note_sector(const v1::Sector& sector, v1::PullSectorsRequest& wanted);
     [[nodiscard]] bool has_file(const folder::SectorPlace& place, const folder::ListedFile& listed) const;
-    // Until the end the folder's manifest says that it is not whole, and what was there.
+    // From here to the end the folder's manifest says that it is not whole, and what was there.
+    [[nodiscard]] cli::Result<void> begin();
     [[nodiscard]] cli::Result<void> write_begun();
+    [[nodiscard]] cli::Result<void> complete();
     void leave_or_remove_earlier_files();
+    void warn_of_strangers() const;
 
     ServerConnection& connection_;
     v1::Job job_;
     v1::Map map_;
     const std::string folder_;
     const bool replace_;
+    bool has_begun_ = false;
+    std::optional<FolderLock> lock_;  // while it comes to its end
     std::optional<folder::FolderManifest> earlier_;
     folder::FolderManifest manifest_;
     std::unordered_set<std::string> names_there_;  // in the folder

@@ -583,7 +583,7 @@ class Client(FarmTest):
             (USAGE, ["submit", island, "--region", "nan,0,1,1"], ["not a number of metres"]),
             (USAGE, ["submit", island, "--region", "9000,9000,9001,9001"], ["touches no sector with ground"]),
             (USAGE, ["status", "7"], ["there is no job 7"]),
-            (USAGE, ["watch", "seven"], ["'jobs/seven' is not the name of a job"]),
+            (USAGE, ["watch", "seven"], ['"seven" is no number of a job']),
             (USAGE, ["cancel", "7"], ["there is no job 7"]),
             (USAGE, ["pull", "7", "--out", self.farm.path("out")], ["there is no job 7"]),
         ]
@@ -1063,6 +1063,51 @@ class Pull(FarmTest):
         self.assertEqual(slow.returncode, 0, out + err)
         self.assert_whole()
 
+    def test_files_of_no_pull_are_told(self):
+        daemon = self.farm.daemon()
+        path = self.two_islands()
+        os.mkdir(self.farm.path("pulled"))
+        for name in ("sector_7_7.drtv", "sector_8_8.drtv"):
+            with open(self.farm.path("pulled/" + name), "wb") as file:
+                file.write(b"old")
+        done = self.farm.bake(daemon, "submit", path, *FEW_RAYS, "--pull", self.farm.path("pulled"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("2 sector files are in", done.stderr)
+        self.assertIn("the first sector_7_7.drtv", done.stderr)
+        done = self.farm.bake(daemon, "--warnings-as-errors", "pull", "1", "--out", self.farm.path("pulled"))
+        self.assertEqual(done.returncode, INVALID, done.stderr)
+
+    def test_a_folder_says_whether_it_is_whole(self):
+        daemon = self.farm.daemon()
+        folder = self.farm.path("pulled")
+        self.pulled(daemon, self.two_islands(), *FEW_RAYS)
+        validate = ("drtv", "validate", folder, "--json")
+
+        def state(*more):
+            done = self.farm.run(*validate, *more)
+            (told,) = json.loads(done.stdout)["folders"]
+            self.assertEqual(told["folder"], folder)
+            return told["state"], done.returncode
+
+        self.assertEqual((state(), state("--whole")), (("whole", 0), ("whole", 0)))
+        with open(folder + "/sectors.json", encoding="utf-8") as file:
+            manifest = file.read()
+
+        def rewrite(text):
+            with open(folder + "/sectors.json", "w", encoding="utf-8") as out:
+                out.write(text)
+
+        rewrite(manifest.replace('"unfinished": 0', '"unfinished": 3'))
+        self.assertEqual((state(), state("--whole")), (("unfinished", 0), ("unfinished", INVALID)))
+        self.assertEqual(state("--warnings-as-errors"), ("unfinished", INVALID))
+        rewrite(manifest.replace('"unfinished": 0', '"unfinished": 0, "pulling": true'))
+        self.assertEqual((state(), state("--quick")), (("pulling", INVALID), ("pulling", INVALID)))
+        os.unlink(folder + "/sectors.json")
+        self.assertEqual((state(), state("--whole")), (("no manifest", 0), ("no manifest", INVALID)))
+        rewrite(manifest)
+        os.unlink(folder + "/sector_2_0.drtv")
+        self.assertEqual((state(), state("--quick")), (("wrong", INVALID), ("wrong", INVALID)))
+
     def test_a_folder_in_place_of_a_file_is_a_sentence(self):
         daemon = self.farm.daemon()
         self.pulled(daemon, self.two_islands(), *FEW_RAYS)
@@ -1412,9 +1457,13 @@ class Incremental(FarmTest):
             i, j = sector["sector"]
             self.assertEqual(drawn.at(64 * i + 3, 64 * j + 3), colours[sector["verdict"]], sector)
         under = self.farm.path("under.png")
-        done = self.farm.bake(daemon, "plan", moved, *REGION, *FEW_RAYS, "--png", under, "--under", picture)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertNotEqual(png_file.read(under).rows, drawn.rows)
+        green = self.farm.path("green.png")
+        for arguments in ((first, "--png", green), (moved, "--png", under, "--under", green)):
+            done = self.farm.bake(daemon, "plan", *arguments, *REGION, *FEW_RAYS)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        i, j = next(sector["sector"] for sector in plan["sectors"] if sector["verdict"] == "rebake")
+        red, green, _ = png_file.read(under).at(64 * i + 30, 64 * j + 30)
+        self.assertTrue(70 < red < 205 and 70 < green < 120, (red, green))
         done = self.farm.bake(daemon, "plan", moved, "--png", self.farm.path("plan.jpg"))
         self.assert_sentence(done, "plan.jpg", ".png", status=USAGE)
         done = self.farm.bake(daemon, "plan", moved, "--png", under, "--under", self.farm.path("no.png"))

@@ -107,7 +107,12 @@ class Usage(Tool):
         self.expect(0, "--version", out="sector format 1.3")
 
     def test_full_disk_behind_stdout_is_not_success(self):
-        for arguments in (["dump", GOLDEN, "--json"], ["info", GOLDEN], ["validate", GOLDEN]):
+        for arguments in (
+            ["dump", GOLDEN, "--json"],
+            ["info", GOLDEN],
+            ["validate", GOLDEN],
+            ["diff", GOLDEN, GOLDEN_1_1, "--json"],
+        ):
             with open("/dev/full", "wb") as full:
                 result = subprocess.run([DRTV, *arguments], stdout=full, stderr=subprocess.PIPE, timeout=60)
             self.assertEqual(result.returncode, UNREADABLE)
