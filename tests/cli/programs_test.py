@@ -12,7 +12,19 @@ import json_lines
 BIN = sys.argv[1]
 COMMANDS = {
     "drtv": ["validate", "issues", "info", "dump", "preview", "strip", "tiles", "diff", "relight"],
-    "bake": ["submit", "plan", "list", "status", "watch", "wait", "cancel", "retry", "pull", "cache"],
+    "bake": [
+        "submit",
+        "plan",
+        "list",
+        "status",
+        "watch",
+        "wait",
+        "cancel",
+        "report",
+        "retry",
+        "pull",
+        "cache",
+    ],
     "bakerd": ["serve", "worker", "render"],
 }
 # Nobody listens there.
