@@ -3,6 +3,7 @@
 #include "client/job_end.h"
 #include "client/job_text.h"
 #include "client/number_text.h"
+#include "format/cli/report.h"
 
 #include <grpcpp/grpcpp.h>
 
@@ -98,6 +99,8 @@ cli::Result<cli::ExitCode> run_cancel(ServerConnection& connection, const std::s
     if (const grpc::Status status = call(*connection.jobs, &v1::Jobs::Stub::CancelJob, request, cancelled);
         !status.ok())
         return tl::unexpected(connection.failure(status));
+    if (cancelled.state() != v1::Job::CANCELLED && has_ended(cancelled))
+        cli::note("the job had ended before: nothing was cancelled");
     print(connection, cancelled);
     return cli::exit_done;
 }

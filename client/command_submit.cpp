@@ -73,8 +73,10 @@ cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
     };
     limit_time(options.timeout_s);
     const auto job = watch_job(connection, number, {.progressed = pull_new});
+    const std::string come_back =
+        fmt::format("; its files: bake pull {} --out {}", number, options.pull_folder);
     if (!job && (job.error().code == cli::exit_interrupted || job.error().may_pass))
-        return tl::unexpected(job.error());
+        return cli::fail(job.error().code, job.error().sentence + come_back);
     // For what is done by then.
     if (time_is_over())
         limit_time(last_pull_s);
@@ -86,7 +88,7 @@ cli::Result<cli::ExitCode> watch_and_pull(ServerConnection& connection,
     if (!job && !pulled)
         cli::warn(pulled.error().sentence);
     if (!job)
-        return tl::unexpected(job.error());
+        return cli::fail(job.error().code, job.error().sentence + come_back);
     auto ended = tell_end(connection, *job);
     if (ended && !pulled)
         return tl::unexpected(pulled.error());

@@ -81,8 +81,10 @@ void add_map_options(CLI::App& command, SubmitOptions& submit) {
             "--preset", submit.preset, "draft (few rays), console, or pc (with local radiance transfer)")
         ->capture_default_str();
     command
-        .add_option("--set", submit.settings, "key=value: changes one setting of the preset; listed below")
-        ->allow_extra_args(false);
+        .add_option(
+            "--set", submit.settings, "Changes one setting of the preset, any number of times; listed below")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
     command.footer(settings::help_text());
     command.add_flag("--exact", submit.exact, "Bake whatever could differ in one bit: tolerance=0");
 }

@@ -85,6 +85,12 @@ void warn_of_roles_files(const map_files::LocalMap& local) {
 }  // namespace
 
 cli::Result<MapContents> collect_map(const std::vector<std::string>& arguments) {
+    for (const std::string& argument : arguments) {
+        std::error_code code;
+        if (argument.find('=') != std::string::npos && !std::filesystem::exists(argument, code))
+            return cli::fail(cli::exit_usage,
+                             argument + " is no map: a setting needs a --set of its own, --set " + argument);
+    }
     const auto local = map_files::LocalMap::find(arguments);
     if (!local)
         return cli::fail(cli::exit_unreadable, local.error());

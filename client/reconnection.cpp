@@ -17,7 +17,7 @@ bool Reconnection::try_again(bool heard) {
     if (Clock::now() - last_contact_ > patience || time_is_over() || interrupted())
         return false;
     if (!told_)
-        cli::note(fmt::format("lost bakerd at {}; trying again for {} s", server_, patience.count()));
+        cli::note(fmt::format("lost bakerd at {}; trying again for up to {} s", server_, patience.count()));
     told_ = true;
     std::this_thread::sleep_for(pause);
     return true;

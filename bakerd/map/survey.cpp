@@ -97,6 +97,7 @@ std::vector<std::string> doubts_about(const Survey& survey) {
     constexpr float small_m = 4;
     constexpr float large_m = 10'000;
     constexpr float tall_m = 128;
+    constexpr float side_m = 20;  // smaller things may stand upright, as a tower does
     constexpr double often = 2;
     std::vector<std::string> doubts;
     if (survey.triangles == 0)
@@ -109,10 +110,10 @@ std::vector<std::string> doubts_about(const Survey& survey) {
     if (side > large_m)
         doubts.push_back(
             fmt::format("the map is {:.1f} km across: was it made in metres? A sector is 64 m", side / 1000));
-    // Of a map that lies as it should most of its ground faces up, however tall it is.
-    const bool is_upright =
-        size.z > 2 * std::min(size.x, size.y) && survey.up_m2 < double{size.z} * double{side} / 4;
-    if (size.z > tall_m && (size.z > side || is_upright))
+    // Of a map that lies as it should the ground faces up, however tall it is.
+    const bool is_sideways = size.z > side_m && size.z > 2 * std::min(size.x, size.y) &&
+                             survey.up_m2 < double{size.z} * double{side} / 4;
+    if (is_sideways || (size.z > tall_m && size.z > side))
         doubts.push_back(
             fmt::format("the map is {:.0f} m across and {:.0f} m tall: {}", side, size.z, remedy));
     else if (survey.down_m2 > often * survey.up_m2)

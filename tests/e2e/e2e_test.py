@@ -818,6 +818,20 @@ class Verdicts(FarmTest):
         self.assertIn("wall 7", {entry["object"] for entry in of_sectors})
         self.assert_sentence(self.farm.bake(daemon, "report", "99"), "there is no job 99", status=USAGE)
 
+    def test_two_settings_behind_one_option_are_told(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        done = self.farm.bake(daemon, "submit", path, "--set", "rays=16", "lprt=1")
+        self.assert_sentence(done, "a setting needs a --set of its own, --set lprt=1", status=USAGE)
+
+    def test_a_job_that_has_ended_cannot_be_cancelled(self):
+        daemon = self.farm.daemon()
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        self.pulled(daemon, path, *FEW_RAYS)
+        done = self.farm.bake(daemon, "cancel", "1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("had ended before: nothing was cancelled", done.stderr)
+
     def test_wait_says_the_end_alone(self):
         daemon = self.farm.daemon()
         path = write_map(self.farm.path("map.gltf"), lawn=LAWN)

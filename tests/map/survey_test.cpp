@@ -118,6 +118,10 @@ TEST(Survey, DoubtsAboutUnitsAndSides) {
     sideways.place(quad({0, 0, 0}, {150, 0, 0}, {150, 150, 0}, {0, 150, 0}));
     sideways.place(box({50, 50, 0}, {60, 60, 10}));
     told(map::doubts_about(survey_of(sideways)), "150 m tall");
+    GltfBuilder small;
+    small.place(quad({0, 0, 0}, {90, 0, 0}, {90, 90, 0}, {0, 90, 0}));
+    small.place(box({50, 50, 0}, {60, 60, 9}));
+    told(map::doubts_about(survey_of(small)), "90 m tall");
     GltfBuilder tower;
     tower.place(square(60));
     tower.place(box({0, 0, 0}, {60, 300, 60}));
