@@ -131,10 +131,9 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
     if (!job)
         return to_status(job.error());
     std::int64_t lost = 0;
-    std::size_t buffered_bytes = 0;
     std::string first_loss;
     const auto send_or_note = [&](const farm::JobSectorView& view) -> grpc::Status {
-        grpc::Status status = send(view, *writer, buffered_bytes);
+        grpc::Status status = send(view, *writer);
         if (status.error_code() != grpc::StatusCode::DATA_LOSS)
             return status;
         if (++lost == 1)
@@ -180,8 +179,7 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
 }
 
 grpc::Status SectorsService::send(const farm::JobSectorView& view,
-                                  grpc::ServerWriter<v1::PullSectorsResponse>& writer,
-                                  std::size_t& buffered_bytes) {
+                                  grpc::ServerWriter<v1::PullSectorsResponse>& writer) {
     const auto bytes = farm_.blobs().get(view.row.file);
     if (!bytes) {
         // Where the server keeps it says nothing to a client.
@@ -197,15 +195,7 @@ grpc::Status SectorsService::send(const farm::JobSectorView& view,
     // The first bytes come with the sector: most files are one message.
     for (std::size_t at = 0; at < bytes->size(); at += max_chunk_bytes) {
         message.set_data(bytes->data() + at, std::min(max_chunk_bytes, bytes->size() - at));
-        // Small files travel together: each flush wakes the other side.
-        constexpr std::size_t flushed_bytes = std::size_t{256} << 10;
-        buffered_bytes += message.data().size();
-        grpc::WriteOptions options;
-        if (buffered_bytes < flushed_bytes)
-            options.set_buffer_hint();
-        else
-            buffered_bytes = 0;
-        if (!writer.Write(message, options))
+        if (!writer.Write(message))
             return grpc::Status::CANCELLED;
         message.clear_sector();
     }

@@ -88,8 +88,7 @@ class SectorsService final : public v1::Sectors::Service {
 
   private:
     [[nodiscard]] grpc::Status send(const farm::JobSectorView& view,
-                                    grpc::ServerWriter<v1::PullSectorsResponse>& writer,
-                                    std::size_t& buffered_bytes);
+                                    grpc::ServerWriter<v1::PullSectorsResponse>& writer);
     farm::Farm& farm_;
 };
 
