@@ -20,11 +20,8 @@ cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
     const auto found = get_job(connection, job);
     if (!found)
         return tl::unexpected(found.error());
-    v1::GetMapRequest request;
-    request.set_name(found->map());
     v1::Map map;
-    if (const grpc::Status status = call(*connection.maps, &v1::Maps::Stub::GetMap, request, map);
-        !status.ok())
+    if (const grpc::Status status = find_map(connection, *found, map); !status.ok())
         return tl::unexpected(connection.failure(status));
     auto pull = FolderPull::open(connection, *found, std::move(map), folder, replace);
     if (!pull)

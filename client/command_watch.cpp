@@ -13,12 +13,8 @@
 #include <grpcpp/grpcpp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <iterator>
-#include <optional>
 #include <set>
-#include <vector>
 
 namespace drtv::client {
 namespace {
@@ -67,20 +63,11 @@ grpc::Status follow(ServerConnection& connection,
             continue;
         if (connection.options.json) {
             std::puts(json_line(job).c_str());
-            std::fflush(stdout);
         } else {
             progress.show(share_ended(job), progress_text(job));
         }
     }
     return reader->Finish();
-}
-
-std::vector<std::string> untold_warnings(const auto& warnings, const std::set<std::string>& told) {
-    std::vector<std::string> untold;
-    std::ranges::copy_if(warnings, std::back_inserter(untold), [&](const std::string& warning) {
-        return !told.contains(warning);
-    });
-    return untold;
 }
 
 }  // namespace
@@ -129,26 +116,25 @@ cli::Result<cli::ExitCode> tell_end(const ServerConnection& connection, const v1
     if (!read)
         cli::warn(fmt::format("the warnings of the job's sectors are not known: {}", read.error().sentence));
     const JobReport& report = read ? *read : JobReport();
-    const std::vector<std::string>& told = cli::warnings_told();
-    const std::set<std::string> told_before(told.begin(), told.end());
-    for (const std::string& warning : untold_warnings(job.warnings(), told_before))
-        cli::warn(warning);
-    // Those of the map first: they are few.
-    for (const std::string& warning : untold_warnings(report.map_warnings, {told.begin(), told.end()}))
-        cli::warn(warning);
-    std::vector<std::string> more_warnings;
-    for (const auto& [thing, of_thing] : report.warnings)
-        std::ranges::transform(of_thing, std::back_inserter(more_warnings), &JobReport::Warning::sentence);
-    const auto more = untold_warnings(more_warnings, {told.begin(), told.end()});
-    if (connection.options.json) {
-        for (const std::string& warning : more)
+    std::set<std::string> told(cli::warnings_told().begin(), cli::warnings_told().end());
+    const auto warn_once = [&](const std::string& warning) {
+        if (told.insert(warning).second)
             cli::warn(warning);
-    } else if (!more.empty()) {
-        cli::note(
-            fmt::format("{}: bake report {}",
-                        counted(static_cast<std::int64_t>(more.size()), "more warning", "more warnings"),
-                        job_number(job)));
+    };
+    std::ranges::for_each(job.warnings(), warn_once);
+    std::ranges::for_each(report.map_warnings, warn_once);
+    std::int64_t untold = 0;
+    for (const auto& [thing, of_thing] : report.warnings) {
+        for (const JobReport::Warning& warning : of_thing) {
+            if (connection.options.json)
+                warn_once(warning.sentence);
+            else
+                untold += told.contains(warning.sentence) ? 0 : 1;
+        }
     }
+    if (untold > 0)
+        cli::note(fmt::format(
+            "{}: bake report {}", counted(untold, "more warning", "more warnings"), job_number(job)));
     std::puts((connection.options.json ? json_line(job, read ? &report : nullptr) : one_line(job)).c_str());
     return end_of(job);
 }

@@ -16,7 +16,7 @@ struct WatchOptions {
 };
 
 // The job as it ended; `job` is "12" or "jobs/12". Fails with exit_interrupted when ctrl-C ended the watch,
-// and with exit_timeout when the time was over (end_calls_by): then the job goes on.
+// and with exit_timeout when the time was over (limit_time): then the job goes on.
 [[nodiscard]] cli::Result<v1::Job> watch_job(ServerConnection& connection,
                                              const std::string& job,
                                              const WatchOptions& options);

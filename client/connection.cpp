@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
@@ -99,13 +98,6 @@ std::string unreachable(const std::string& server, const std::string& message) {
 }
 
 }  // namespace
-
-void limit_time(double seconds) {
-    using std::chrono::system_clock;
-    if (seconds > 0)
-        end_calls_by(system_clock::now() + std::chrono::duration_cast<system_clock::duration>(
-                                               std::chrono::duration<double>(seconds)));
-}
 
 cli::Failure ServerConnection::failure(const grpc::Status& status, cli::ExitCode invalid) const {
     if (interrupted())

@@ -53,10 +53,6 @@ template <class Stub, class Request, class Response>
     return (stub.*method)(&context, request, &response);
 }
 
-// That many seconds for all calls from now on, the wait between them included; 0: no limit. Call failures are
-// those of exit_timeout then.
-void limit_time(double seconds);
-
 // Calls nobody yet.
 [[nodiscard]] cli::Result<ServerConnection> connect(const ConnectionOptions& options);
 

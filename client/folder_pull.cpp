@@ -14,10 +14,10 @@
 #include <grpcpp/grpcpp.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
 namespace drtv::client {
 namespace {
@@ -196,24 +196,14 @@ void FolderPull::leave_or_remove_earlier_files() {
 
 // Files that no pull has listed, which a game would load all the same.
 void FolderPull::warn_of_strangers() const {
-    std::int64_t strangers = 0;
-    std::string first;
-    std::error_code code;
-    std::set<std::string> listed;
-    for (const auto& [place, file] : manifest_.files)
-        listed.insert(folder::sector_file_name(place.second, place.first));
-    for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code)) {
-        const std::string name = entry->path().filename().string();
-        if (entry->path().extension() != ".drtv" || listed.contains(name))
-            continue;
-        first = strangers == 0 ? name : std::min(first, name);
-        ++strangers;
-    }
-    if (strangers > 0)
-        cli::warn(fmt::format("{} in {} of no pull, the first {}: drtv validate refuses the folder with them",
-                              counted(strangers, "sector file is", "sector files are"),
-                              folder_,
-                              first));
+    const std::vector<std::string> strangers = folder::unlisted_files(folder_, manifest_);
+    if (strangers.empty())
+        return;
+    const auto count = static_cast<std::int64_t>(strangers.size());
+    cli::warn(fmt::format("{} in {} of no pull, the first {}: drtv validate refuses the folder with them",
+                          counted(count, "sector file is", "sector files are"),
+                          folder_,
+                          strangers.front()));
 }
 
 void FolderPull::report() const {

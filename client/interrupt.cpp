@@ -20,8 +20,10 @@
 namespace drtv::client {
 namespace {
 
+using Clock = std::chrono::system_clock;  // that of gRPC's deadlines
+
 std::atomic<bool> interrupt_seen{false};
-std::atomic<Deadline> deadline_of_calls{Deadline::max()};
+std::atomic<Clock::time_point> deadline_of_calls{Clock::time_point::max()};
 std::array<int, 2> wake_pipe = {-1, -1};
 
 // gRPC ends a cancelled call only after the write that is under way, and a line that stands still takes none.
@@ -76,16 +78,18 @@ bool interrupted() {
     return interrupt_seen;
 }
 
-void end_calls_by(Deadline deadline) {
-    deadline_of_calls = deadline;
+void limit_time(double seconds) {
+    if (seconds > 0)
+        deadline_of_calls = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                               std::chrono::duration<double>(seconds));
 }
 
 bool time_is_over() {
-    return std::chrono::system_clock::now() >= deadline_of_calls.load();
+    return Clock::now() >= deadline_of_calls.load();
 }
 
 InterruptGuard::InterruptGuard(grpc::ClientContext& context, std::string sentence) : context_(context) {
-    if (const Deadline deadline = deadline_of_calls; deadline != Deadline::max())
+    if (const auto deadline = deadline_of_calls.load(); deadline != Clock::time_point::max())
         context_.set_deadline(deadline);
     const std::lock_guard lock(open_calls_mutex);
     open_calls.push_back({&context_, std::move(sentence)});

@@ -1,7 +1,6 @@
 // What ends calls: ctrl-C, which is noted, so that a command ends in good order, and the time of --timeout.
 #pragma once
 
-#include <chrono>
 #include <string>
 
 namespace grpc {
@@ -16,10 +15,9 @@ void catch_interrupt();
 // Whether ctrl-C has been seen since. Thread-safe.
 [[nodiscard]] bool interrupted();
 
-using Deadline = std::chrono::system_clock::time_point;
-
-// From now on calls end by then, too. Thread-safe.
-void end_calls_by(Deadline deadline);
+// That many seconds for all calls from now on, the wait between them included; 0: no limit. Call failures are
+// those of exit_timeout then (ServerConnection::failure).
+void limit_time(double seconds);
 [[nodiscard]] bool time_is_over();
 
 // Cancels a call as soon as ctrl-C is seen, and gives it the deadline of all. A call that does not let go

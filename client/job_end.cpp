@@ -18,6 +18,12 @@ cli::Result<v1::Job> get_job(ServerConnection& connection, const std::string& jo
     return found;
 }
 
+grpc::Status find_map(const ServerConnection& connection, const v1::Job& job, v1::Map& map) {
+    v1::GetMapRequest request;
+    request.set_name(job.map());
+    return call(*connection.maps, &v1::Maps::Stub::GetMap, request, map);
+}
+
 cli::Result<cli::ExitCode> end_of(const v1::Job& job) {
     if (job.state() == v1::Job::SUCCEEDED && job.sectors_total() > 0 && job.probes() == 0) {
         return cli::fail(

@@ -140,7 +140,6 @@ cli::Result<PreparedJob> prepare_job(ServerConnection& connection, const SubmitO
                      : "the map has no ground, so there is nothing to bake");
     }
     std::puts((connection.options.json ? map_json_line(*map) : map_text(*map)).c_str());
-    std::fflush(stdout);
     for (const std::string& warning : map->warnings())
         cli::warn(warning);
     if (!options.pull_folder.empty()) {

@@ -41,7 +41,7 @@ image::MapExtent extent_of(const v1::Plan& plan) {
     for (const v1::PlannedSector& sector : plan.sectors())
         sectors.push_back({sector.i(), sector.j()});
     const image::MapExtent usual = image::measure(sectors, 0);
-    return image::measure(sectors, std::max(usual.metres_per_pixel, image::map_sector_m / max_sector_px));
+    return image::measure(sectors, std::max(usual.metres_per_pixel, sector_size_m / max_sector_px));
 }
 
 int pixel(double place) {
@@ -49,10 +49,10 @@ int pixel(double place) {
 }
 
 PixelRect place_of(const v1::PlannedSector& sector, const image::MapExtent& extent) {
-    const int x0 = pixel(extent.x_px(sector.i() * image::map_sector_m));
-    const int x1 = pixel(extent.x_px((sector.i() + 1) * image::map_sector_m));
-    const int y0 = pixel(extent.y_px((sector.j() + 1) * image::map_sector_m));
-    const int y1 = pixel(extent.y_px(sector.j() * image::map_sector_m));
+    const int x0 = pixel(extent.x_px(sector.i() * sector_size_m));
+    const int x1 = pixel(extent.x_px((sector.i() + 1) * sector_size_m));
+    const int y0 = pixel(extent.y_px((sector.j() + 1) * sector_size_m));
+    const int y1 = pixel(extent.y_px(sector.j() * sector_size_m));
     const int gap = x1 - x0 >= min_gapped_sector_px ? 1 : 0;
     return {x0, y0, std::max(x1 - gap, x0 + 1), std::max(y1 - gap, y0 + 1)};
 }

@@ -1,5 +1,6 @@
 #include "client/read_report.h"
 
+#include "client/job_end.h"
 #include "client/reconnection.h"
 #include "client/sector_list.h"
 
@@ -10,10 +11,8 @@ namespace {
 
 cli::Result<JobReport> read_once(const ServerConnection& connection, const v1::Job& job) {
     JobReport report;
-    v1::GetMapRequest request;
-    request.set_name(job.map());
     v1::Map map;
-    const grpc::Status status = call(*connection.maps, &v1::Maps::Stub::GetMap, request, map);
+    const grpc::Status status = find_map(connection, job, map);
     // One that is not kept any more has no say.
     if (!status.ok() && status.error_code() != grpc::StatusCode::NOT_FOUND)
         return tl::unexpected(connection.failure(status));

@@ -42,7 +42,7 @@ ROOMS = {
     "format/spelling": "",
     "format/cli": "format/spelling drtv/version.h CLI11 nlohmann_json tl-expected",
     "format/folder": "format/cli nlohmann_json OpenSSL tl-expected",
-    "format/image": "format/folder format/cli stb tl-expected",
+    "format/image": "format/folder format/cli drtv/conventions.h stb tl-expected",
     "format/kit": "format/folder format/cli format/light format/runtime format CLI11 tl-expected",
     "format/tool": "format/kit format/image format/folder format/cli format/runtime format CLI11 nlohmann_json tl-expected threads",
     "placement": "drtv/conventions.h GLM CGAL fmt tl-expected",

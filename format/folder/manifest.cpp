@@ -150,27 +150,33 @@ std::string difference_from_list(const std::string& path, const ListedFile& list
     return *digest == listed.sha256 ? "" : "is not the file that is listed: its bytes differ";
 }
 
+std::vector<std::string> unlisted_files(const std::string& folder, const FolderManifest& manifest) {
+    std::set<std::string> listed;
+    for (const auto& [place, file] : manifest.files)
+        listed.insert(sector_file_name(place.second, place.first));
+    std::vector<std::string> unlisted;
+    std::error_code code;
+    for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+        const std::string name = entry->path().filename().string();
+        if (entry->path().extension() == ".drtv" && !listed.contains(name))
+            unlisted.push_back(name);
+    }
+    std::ranges::sort(unlisted);
+    return unlisted;
+}
+
 std::vector<std::string> check_listed_files(const std::string& folder,
                                             const FolderManifest& manifest,
                                             FileCheck check) {
     std::vector<std::string> sentences;
-    std::set<std::string> names;
     for (const auto& [place, listed] : manifest.files) {
-        const std::string name = sector_file_name(place.second, place.first);
         const std::string difference = difference_from_list(sector_file_path(folder, place), listed, check);
         if (!difference.empty())
-            sentences.push_back(manifest_path(folder) + ": " + name + " " + difference);
-        names.insert(name);
+            sentences.push_back(manifest_path(folder) + ": " + sector_file_name(place.second, place.first) +
+                                " " + difference);
     }
-    std::error_code code;
-    std::vector<std::string> strangers;
-    for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
-        const std::string name = entry->path().filename().string();
-        if (entry->path().extension() == ".drtv" && !names.contains(name))
-            strangers.push_back(manifest_path(folder) + ": " + name + " is not listed");
-    }
-    std::ranges::sort(strangers);
-    sentences.insert(sentences.end(), strangers.begin(), strangers.end());
+    for (const std::string& name : unlisted_files(folder, manifest))
+        sentences.push_back(manifest_path(folder) + ": " + name + " is not listed");
     return sentences;
 }
 

@@ -63,6 +63,10 @@ enum class FileCheck : std::uint8_t { size, bytes };
                                                const ListedFile& listed,
                                                FileCheck check = FileCheck::bytes);
 
+// Names of sector files in the folder that the manifest does not list, sorted.
+[[nodiscard]] std::vector<std::string> unlisted_files(const std::string& folder,
+                                                      const FolderManifest& manifest);
+
 // What of the listed files is not as the manifest says: one sentence each, and of files beside them that it
 // does not list.
 [[nodiscard]] std::vector<std::string> check_listed_files(const std::string& folder,

@@ -11,7 +11,7 @@ constexpr double usual_side_px = 1600;
 constexpr double max_side_px = 7168;
 
 std::size_t pixels_of(int sectors, double metres_per_pixel) {
-    const double pixels = std::round(sectors * double{map_sector_m} / metres_per_pixel);
+    const double pixels = std::round(sectors * double{sector_size_m} / metres_per_pixel);
     return static_cast<std::size_t>(std::max(1.0, pixels));
 }
 
@@ -33,7 +33,7 @@ MapExtent measure(std::span<const std::array<std::int32_t, 2>> sectors, double m
         e.i1 = std::max(e.i1, i + 1);
         e.j1 = std::max(e.j1, j + 1);
     }
-    const double side_m = std::max(e.i1 - e.i0, e.j1 - e.j0) * double{map_sector_m};
+    const double side_m = std::max(e.i1 - e.i0, e.j1 - e.j0) * double{sector_size_m};
     if (metres_per_pixel <= 0)
         e.metres_per_pixel = side_m / usual_side_px;
     const double finest = side_m / max_side_px;

@@ -1,6 +1,8 @@
 // The part of the world that a map from above shows, and where its pixels lie.
 #pragma once
 
+#include <drtv/conventions.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -8,9 +10,6 @@
 #include <string>
 
 namespace drtv::image {
-
-// World square [64 i, 64 i + 64) x [64 j, 64 j + 64) metres.
-inline constexpr int map_sector_m = 64;
 
 // A rectangle of whole sectors.
 struct MapExtent {
@@ -29,16 +28,16 @@ struct MapExtent {
     // World position of a pixel's centre; rows run from the north (large y) down.
     [[nodiscard]] double x_m(std::size_t px) const {
         const double pixels = static_cast<double>(px) + 0.5;
-        return i0 * map_sector_m + pixels * metres_per_pixel;
+        return i0 * sector_size_m + pixels * metres_per_pixel;
     }
     [[nodiscard]] double y_m(std::size_t py) const {
         const double pixels = static_cast<double>(py) + 0.5;
-        return j1 * map_sector_m - pixels * metres_per_pixel;
+        return j1 * sector_size_m - pixels * metres_per_pixel;
     }
 
     // The inverse, in pixels.
-    [[nodiscard]] double x_px(double x_m) const { return (x_m - i0 * map_sector_m) / metres_per_pixel; }
-    [[nodiscard]] double y_px(double y_m) const { return (j1 * map_sector_m - y_m) / metres_per_pixel; }
+    [[nodiscard]] double x_px(double x_m) const { return (x_m - i0 * sector_size_m) / metres_per_pixel; }
+    [[nodiscard]] double y_px(double y_m) const { return (j1 * sector_size_m - y_m) / metres_per_pixel; }
 };
 
 // Around all sectors (i, j). At 0 metres a pixel the longer side has about 1,600 pixels. However far apart

@@ -66,10 +66,10 @@ class Sheet {
     [[nodiscard]] int right() const { return left_ + static_cast<int>(map_.width); }
     [[nodiscard]] int bottom() const { return top_ + static_cast<int>(map_.height); }
     [[nodiscard]] int scale_bar_height() const { return 2 * line_ + gap(); }
-    [[nodiscard]] double sector_px() const { return map_sector_m / extent_.metres_per_pixel; }
+    [[nodiscard]] double sector_px() const { return sector_size_m / extent_.metres_per_pixel; }
 
     static std::string number(int n) { return std::to_string(n); }
-    static std::string metres_of(int sector) { return number(sector * map_sector_m); }
+    static std::string metres_of(int sector) { return number(sector * sector_size_m); }
 
     [[nodiscard]] int widest(std::initializer_list<std::string> texts) const {
         int widest = 0;
@@ -98,13 +98,13 @@ class Sheet {
         const int number_step =
             label_step(sector_px(), widest({number(extent_.i0), number(extent_.i1)}) + gap());
         visit_labelled(extent_.i0, extent_.i1, number_step, [&](int i) {
-            const double middle = extent_.x_px((i + 0.5) * map_sector_m);
+            const double middle = extent_.x_px((i + 0.5) * sector_size_m);
             write_centred(left_ + static_cast<int>(middle), top_ - line_ + gap() / 2, number(i), faint_ink);
         });
         const int metre_step =
             label_step(sector_px(), widest({metres_of(extent_.i0), metres_of(extent_.i1)}) + 2 * gap());
         visit_labelled(extent_.i0, extent_.i1 + 1, metre_step, [&](int i) {
-            const int x = left_ + static_cast<int>(extent_.x_px(i * map_sector_m));
+            const int x = left_ + static_cast<int>(extent_.x_px(i * sector_size_m));
             fill(image_, {x, bottom(), x + scale_ / 2, bottom() + gap()}, ink);
             write_centred(x, bottom() + gap() + scale_, metres_of(i), ink);
         });
@@ -113,12 +113,12 @@ class Sheet {
     void write_rows() {
         const int step = label_step(sector_px(), line_);
         visit_labelled(extent_.j0, extent_.j1, step, [&](int j) {
-            const double middle = extent_.y_px((j + 0.5) * map_sector_m);
+            const double middle = extent_.y_px((j + 0.5) * sector_size_m);
             const int y = top_ + static_cast<int>(middle) - 4 * scale_;
             write(right() + gap(), y, number(j), faint_ink);
         });
         visit_labelled(extent_.j0, extent_.j1 + 1, step, [&](int j) {
-            const int y = top_ + static_cast<int>(extent_.y_px(j * map_sector_m));
+            const int y = top_ + static_cast<int>(extent_.y_px(j * sector_size_m));
             fill(image_, {left_ - gap(), y, left_, y + scale_ / 2}, ink);
             const std::string text = metres_of(j);
             write(left_ - 2 * gap() - text_width(text, scale_), y - 4 * scale_, text, ink);
@@ -188,8 +188,8 @@ class Sheet {
 
     [[nodiscard]] std::string world() const {
         const double mpp = extent_.metres_per_pixel;
-        const double x0 = extent_.i0 * map_sector_m - left_ * mpp;
-        const double y1 = extent_.j1 * map_sector_m + top_ * mpp;
+        const double x0 = extent_.i0 * sector_size_m - left_ * mpp;
+        const double y1 = extent_.j1 * sector_size_m + top_ * mpp;
         std::array<char, 160> text{};
         std::snprintf(text.data(),
                       text.size(),
