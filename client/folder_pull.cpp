@@ -4,6 +4,7 @@
 #include "client/folder_manifest.h"
 #include "client/job_text.h"
 #include "client/number_text.h"
+#include "client/pull_report.h"
 #include "client/reconnection.h"
 #include "client/sector_list.h"
 #include "client/sector_stream.h"
@@ -12,9 +13,7 @@
 
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
-#include <nlohmann/json.hpp>
 
-#include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -24,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-folder::SectorPlace place_of(const v1::Sector& sector) {
-    return {sector.coordinate().j(), sector.coordinate().i()};
+folder::SectorPlace place_of(const v1::SectorCoordinate& coordinate) {
+    return {coordinate.j(), coordinate.i()};
 }
 
 }  // namespace
@@ -58,17 +57,64 @@ cli::Result<void> FolderPull::pull() {
 }
 
 cli::Result<void> FolderPull::pull_new() {
-    const auto wanted = missing_files();
-    if (!wanted)
-        return tl::unexpected(wanted.error());
-    if (wanted->sectors().empty())
+    look_at_folder();
+    FileWriters writers(folder_, job_.sectors_total());
+    auto pulled = pull_pages(writers);
+    auto written = writers.finish();
+    for (const v1::SectorCoordinate& coordinate : writers.written()) {
+        here_.insert(place_of(coordinate));
+        pulled_.insert(place_of(coordinate));
+    }
+    return written ? pulled : written;
+}
+
+// One look at the folder is cheaper than one at each file that is not there.
+void FolderPull::look_at_folder() {
+    names_there_.clear();
+    std::error_code code;
+    for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code))
+        names_there_.insert(entry->path().filename().string());
+}
+
+// The server looks up the next page meanwhile, and no request grows with the map.
+cli::Result<void> FolderPull::pull_pages(FileWriters& writers) {
+    manifest_.unfinished = 0;
+    std::optional<LostFiles> lost;
+    int lost_later = 0;
+    SectorPages pages(connection_, job_.name());
+    for (;;) {
+        const auto page = pages.next();
+        if (!page)
+            return tl::unexpected(page.error());
+        if (!*page)
+            break;
+        v1::PullSectorsRequest wanted;
+        wanted.set_job(job_.name());
+        wanted.set_takes_packs(true);
+        for (const v1::Sector& sector : (*page)->sectors()) {
+            if (is_missing(sector))
+                *wanted.add_sectors() = sector.coordinate();
+            else if (sector.state() == v1::Sector::DONE)
+                writers.skip();
+        }
+        if (wanted.sectors().empty())
+            continue;
+        if (auto begun = begin(); !begun)
+            return begun;
+        const auto lost_here = stream_sectors(connection_, wanted, writers);
+        if (!lost_here)
+            return tl::unexpected(lost_here.error());
+        if (!lost)
+            lost = *lost_here;
+        else if (*lost_here)
+            lost_later += (*lost_here)->count;
+    }
+    if (!lost)
         return {};
-    if (auto begun = begin(); !begun)
-        return begun;
-    return stream_sectors(connection_, *wanted, folder_, [this](const v1::Sector& sector) {
-        here_.insert(place_of(sector));
-        pulled_.insert(place_of(sector));
-    });
+    if (lost_later > 0)
+        lost->failure.sentence += fmt::format(
+            " ({} lost too)", counted(lost_later, "file of later sectors is", "files of later sectors are"));
+    return tl::unexpected(lost->failure);
 }
 
 cli::Result<void> FolderPull::begin() {
@@ -120,36 +166,20 @@ cli::Result<void> FolderPull::complete() {
     return folder::write_whole(folder::manifest_path(folder_), folder::manifest_text(manifest_));
 }
 
-cli::Result<v1::PullSectorsRequest> FolderPull::missing_files() {
-    v1::PullSectorsRequest wanted;
-    wanted.set_job(job_.name());
-    manifest_.unfinished = 0;
-    // One look at the folder is cheaper than one at each file that is not there.
-    names_there_.clear();
-    std::error_code code;
-    for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code))
-        names_there_.insert(entry->path().filename().string());
-    auto listed = for_each_sector(
-        connection_, job_.name(), [&](const v1::Sector& sector) { note_sector(sector, wanted); });
-    if (!listed)
-        return tl::unexpected(listed.error());
-    return wanted;
-}
-
-void FolderPull::note_sector(const v1::Sector& sector, v1::PullSectorsRequest& wanted) {
+bool FolderPull::is_missing(const v1::Sector& sector) {
     if (sector.state() != v1::Sector::DONE) {
         ++manifest_.unfinished;
-        return;
+        return false;
     }
-    const folder::SectorPlace place = place_of(sector);
+    const folder::SectorPlace place = place_of(sector.coordinate());
     const folder::ListedFile listed{sector.sha256(), sector.size_bytes(), manifest_.map};
     manifest_.files[place] = listed;
     if (here_.contains(place))
-        return;
-    if (has_file(place, listed))
-        here_.insert(place);
-    else
-        *wanted.add_sectors() = sector.coordinate();
+        return false;
+    if (!has_file(place, listed))
+        return true;
+    here_.insert(place);
+    return false;
 }
 
 bool FolderPull::has_file(const folder::SectorPlace& place, const folder::ListedFile& listed) const {
@@ -208,27 +238,13 @@ void FolderPull::warn_of_strangers() const {
 
 void FolderPull::report() const {
     const auto pulled = static_cast<std::int64_t>(pulled_.size());
-    const auto unchanged = static_cast<std::int64_t>(here_.size()) - pulled;
-    if (connection_.options.json) {
-        nlohmann::ordered_json json;
-        json["kind"] = "pull";
-        json["job"] = job_number(job_);
-        json["folder"] = folder_;
-        json["pulled"] = pulled;
-        json["unchanged"] = unchanged;
-        json["removed"] = removed_;
-        json["unfinished"] = manifest_.unfinished;
-        std::puts(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
-        return;
-    }
-    std::string text = fmt::format("{}: {} pulled", folder_, counted(pulled, "sector file", "sector files"));
-    if (unchanged > 0)
-        text += fmt::format(", {} were there already", with_thousands(unchanged));
-    if (removed_ > 0)
-        text += fmt::format(", {} removed that the map no longer has", with_thousands(removed_));
-    if (manifest_.unfinished > 0)
-        text += fmt::format(", {} not done", counted(manifest_.unfinished, "sector is", "sectors are"));
-    std::puts(text.c_str());
+    print_pull({.job = job_number(job_),
+                .folder = folder_,
+                .pulled = pulled,
+                .unchanged = static_cast<std::int64_t>(here_.size()) - pulled,
+                .removed = removed_,
+                .unfinished = manifest_.unfinished},
+               connection_.options.json);
 }
 
 }  // namespace drtv::client

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/connection.h"
+#include "client/file_writers.h"
 #include "client/folder_lock.h"
 #include "format/cli/failure.h"
 #include "format/folder/manifest.h"
@@ -44,9 +45,10 @@ class FolderPull {
     [[nodiscard]] cli::Result<void> read_earlier();
     // As long as it takes a daemon that restarts.
     [[nodiscard]] cli::Result<void> pull();
-    // Those that are done, of which the folder has no right file.
-    [[nodiscard]] cli::Result<v1::PullSectorsRequest> missing_files();
-    void note_sector(const v1::Sector& sector, v1::PullSectorsRequest& wanted);
+    void look_at_folder();
+    [[nodiscard]] cli::Result<void> pull_pages(FileWriters& writers);
+    // Whether the sector is done, and the folder has no right file of it.
+    [[nodiscard]] bool is_missing(const v1::Sector& sector);
     [[nodiscard]] bool has_file(const folder::SectorPlace& place, const folder::ListedFile& listed) const;
     // From here to the end the folder's manifest says that it is not whole, and what was there.
     [[nodiscard]] cli::Result<void> begin();

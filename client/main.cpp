@@ -14,6 +14,7 @@
 #include "format/cli/version.h"
 #include "settings/table.h"
 
+#include <malloc.h>
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
@@ -172,6 +173,10 @@ int main(int argc, char** argv) {
     using namespace drtv;
     // gRPC tells failures in paragraphs of its own; ours are one sentence. The variable, when set, wins.
     ::setenv("GRPC_VERBOSITY", "NONE", 0);
+    // Arrived files come and go: pages given back at once, and faulted in anew, were 40 % of a pull's CPU
+    // time.
+    ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
+    ::mallopt(M_TOP_PAD, 1 << 20);
     CLI::App app{"bake submits maps to bakerd and pulls the baked sector files.", "bake"};
     app.require_subcommand(1);
     app.set_version_flag("--version", cli::version_text("bake"));

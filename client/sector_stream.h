@@ -1,20 +1,23 @@
-// Sector files of a job, out of the server's stream into a folder.
+// Sector files of a job, out of the server's stream.
 #pragma once
 
 #include "client/connection.h"
+#include "client/file_writers.h"
 #include "format/cli/failure.h"
 
-#include <cstdint>
-#include <functional>
-#include <string>
+#include <optional>
 
 namespace drtv::client {
 
-// Writes the files of the wanted sectors, each whole, and tells `written` of each. Files that were written
-// before the stream broke stay. Fails with exit_interrupted after ctrl-C. REQUIRES: the folder is there.
-[[nodiscard]] cli::Result<void> stream_sectors(ServerConnection& connection,
-                                               const v1::PullSectorsRequest& wanted,
-                                               const std::string& folder,
-                                               const std::function<void(const v1::Sector&)>& written);
+struct LostFiles {
+    int count = 0;
+    cli::Failure failure;  // of the pull
+};
+
+// Gives the files of the wanted sectors to the writers, all but those that the server has lost. Fails with
+// exit_interrupted after ctrl-C.
+[[nodiscard]] cli::Result<std::optional<LostFiles>> stream_sectors(ServerConnection& connection,
+                                                                   const v1::PullSectorsRequest& wanted,
+                                                                   FileWriters& writers);
 
 }  // namespace drtv::client

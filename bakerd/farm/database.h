@@ -52,6 +52,8 @@ class Database {
         const std::lock_guard lock(mutex_);
         const StatementsEnd end(connection_);
         try {
+            // Without it every statement locks the file anew. It rolls back nothing.
+            const SQLite::Transaction one_lock(connection_.raw());
             return work(connection_);
         } catch (const SQLite::Exception& exception) {
             return error_of(exception);

@@ -195,41 +195,15 @@ Result<JobView> Farm::wait_for_change(std::int64_t id,
     return with_warnings(book_.wait_for_change(id, seen, patience), id);
 }
 
-JobSectorView Farm::view_of(Checked<JobSectorRow> sector) const {
-    if (!sector.sound) {
-        sector.row.state = SectorState::failed;
-        sector.row.error = "its row in the database is damaged";
-    }
-    const bool running =
-        sector.row.state == SectorState::waiting && book_.is_running(sector.row.job, sector.row.sector);
-    return {std::move(sector.row), running};
-}
-
 Result<std::vector<JobSectorView>> Farm::list_sectors(std::int64_t id,
                                                       std::optional<map::SectorCoordinate> after,
                                                       std::int64_t count) {
-    if (!book_.view(id))
-        return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
-    auto rows =
-        database_->read([&](Connection& connection) { return sectors_of_job(connection, id, after, count); });
-    if (!rows)
-        return tl::unexpected(rows.error());
-    std::vector<JobSectorView> views;
-    for (Checked<JobSectorRow>& row : *rows)
-        views.push_back(view_of(std::move(row)));
-    return views;
+    return sector_views(*database_, book_, id, after, count);
 }
 
-Result<JobSectorView> Farm::get_sector(std::int64_t id, map::SectorCoordinate sector) {
-    if (!book_.view(id))
-        return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
-    auto row = database_->read([&](Connection& connection) { return sector_of_job(connection, id, sector); });
-    if (!row)
-        return tl::unexpected(row.error());
-    if (!*row)
-        return fail(ErrorCode::not_found,
-                    fmt::format("job {} has no sector ({}, {})", id, sector.i, sector.j));
-    return view_of(std::move(**row));
+Result<std::vector<JobSectorView>> Farm::get_sectors(std::int64_t id,
+                                                     const std::vector<map::SectorCoordinate>& sectors) {
+    return sector_views(*database_, book_, id, sectors);
 }
 
 Result<CacheView> Farm::cache() {

@@ -8,6 +8,7 @@
 #include "bakerd/farm/local_executor.h"
 #include "bakerd/farm/plan.h"
 #include "bakerd/farm/records.h"
+#include "bakerd/farm/sector_views.h"
 #include "bakerd/store/blob_store.h"
 #include "bakerd/store/error.h"
 #include "bakerd/store/manifest.h"
@@ -36,11 +37,6 @@ struct PlanView {
 struct CacheView {
     CacheCounts counts;
     std::int64_t limit_bytes = 0;
-};
-
-struct JobSectorView {
-    JobSectorRow row;
-    bool running = false;
 };
 
 class Farm {
@@ -84,7 +80,9 @@ class Farm {
     // The first `count` in the order of (j, i), behind `after` where it is given.
     [[nodiscard]] store::Result<std::vector<JobSectorView>> list_sectors(
         std::int64_t job, std::optional<map::SectorCoordinate> after, std::int64_t count);
-    [[nodiscard]] store::Result<JobSectorView> get_sector(std::int64_t job, map::SectorCoordinate sector);
+    // In the order asked for; fails when one is not part of the job.
+    [[nodiscard]] store::Result<std::vector<JobSectorView>> get_sectors(
+        std::int64_t job, const std::vector<map::SectorCoordinate>& sectors);
 
     [[nodiscard]] store::Result<CacheView> cache();
     // Removes all results that no running job holds; gives what is left.
@@ -102,7 +100,6 @@ class Farm {
                                                         const std::function<bool()>& is_left);
     // Jobs in memory know no warnings of sectors.
     [[nodiscard]] store::Result<JobView> with_warnings(std::optional<JobView> view, std::int64_t id);
-    [[nodiscard]] JobSectorView view_of(Checked<JobSectorRow> sector) const;
 
     const Options options_;
     const std::unique_ptr<DataFolder> folder_;

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 
+// A PNG may have an empty IDAT chunk, whose no bytes stb_image 2.27 copies to a null pointer.
+#define memcpy(to, from, size) ((size) == 0 ? (to) : (memcpy)(to, from, size))
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
@@ -17,6 +20,7 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
+#undef memcpy
 
 namespace drtv::map {
 namespace {

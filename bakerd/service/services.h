@@ -87,8 +87,6 @@ class SectorsService final : public v1::Sectors::Service {
                              grpc::ServerWriter<v1::PullSectorsResponse>* writer) override;
 
   private:
-    [[nodiscard]] grpc::Status send(const farm::JobSectorView& view,
-                                    grpc::ServerWriter<v1::PullSectorsResponse>& writer);
     farm::Farm& farm_;
 };
 

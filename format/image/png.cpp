@@ -5,11 +5,16 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb/stb_image_write.h>
 
+#include <cstring>
+
+// A PNG may have an empty IDAT chunk, whose no bytes stb_image 2.27 copies to a null pointer.
+#define memcpy(to, from, size) ((size) == 0 ? (to) : (memcpy)(to, from, size))
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_NO_STDIO
 #define STBI_ONLY_PNG
 #include <stb/stb_image.h>
+#undef memcpy
 
 #include <algorithm>
 #include <array>

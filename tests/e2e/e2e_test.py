@@ -901,6 +901,30 @@ class Verdicts(FarmTest):
 class Pull(FarmTest):
     """Folders that are whole."""
 
+    def test_lost_files_of_a_large_map_cost_no_other(self):
+        daemon = self.farm.daemon()
+        side = 46 * 64 - 1  # 2,116 sectors: the client lists them in two pages
+        plain = write_map(
+            self.farm.path("plain.gltf"), plain=[(1, 1, 0), (side, 1, 0), (side, side, 0), (1, side, 0)]
+        )
+        few = ["--set", "rays=16", "--set", "bounces=1", "--set", "reach=16"]
+        done = self.farm.bake(daemon, "submit", plain, "--preset", "draft", *few, "--wait", "--yes")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("all")).returncode, 0)
+        everything = read_folder(self.farm.path("all"))
+        self.assertEqual(len(everything), 2116)
+        for name in ("sector_0_0.drtv", "sector_45_45.drtv"):
+            digest = hashlib.sha256(everything.pop(name)).hexdigest()
+            os.remove(self.farm.path(f"data/blobs/objects/{digest[:2]}/{digest}"))
+        refused = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("rest"))
+        self.assert_sentence(
+            refused,
+            "the file of sector (0, 0) is no longer kept",
+            "(1 file of later sectors is lost too)",
+            status=UNREADABLE,
+        )
+        self.assertTrue(read_folder(self.farm.path("rest")) == everything)
+
     def two_islands(self, name="map.gltf"):
         moved = [(x + 128, y, z) for x, y, z in LAWN]
         return write_map(self.farm.path(name), lawn=LAWN, far=moved)

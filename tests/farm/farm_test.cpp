@@ -194,7 +194,7 @@ TEST_F(FarmTest, WrongRequestsAreRefusedAndLeaveNoJob) {
         EXPECT_EQ(farm->cancel_job(id).error().code, store::ErrorCode::not_found);
         EXPECT_EQ(farm->wait_for_change(id, 0, 1ms).error().code, store::ErrorCode::not_found);
         EXPECT_EQ(farm->list_sectors(id, std::nullopt, 1).error().code, store::ErrorCode::not_found);
-        EXPECT_EQ(farm->get_sector(id, {0, 0}).error().code, store::ErrorCode::not_found);
+        EXPECT_EQ(farm->get_sectors(id, {{0, 0}}).error().code, store::ErrorCode::not_found);
     }
 }
 
@@ -206,8 +206,8 @@ TEST_F(FarmTest, ARegionBakesOnlyWhatItTouches) {
     const std::vector<JobSectorView> all = sectors(view.row.id);
     EXPECT_EQ(all[0].row.sector, (map::SectorCoordinate{1, 0}));
     EXPECT_EQ(all[1].row.sector, (map::SectorCoordinate{1, 1}));
-    EXPECT_TRUE(farm->get_sector(view.row.id, {1, 1}));
-    EXPECT_EQ(farm->get_sector(view.row.id, {0, 0}).error().code, store::ErrorCode::not_found);
+    EXPECT_TRUE(farm->get_sectors(view.row.id, {{1, 1}}));
+    EXPECT_EQ(farm->get_sectors(view.row.id, {{0, 0}}).error().code, store::ErrorCode::not_found);
 }
 
 TEST_F(FarmTest, TwoJobsThatShareSectorsBakeEachOnce) {
@@ -275,12 +275,12 @@ TEST_F(FarmTest, ARestartGoesOnWithTheRunningJob) {
 
 TEST_F(FarmTest, StopPutsBackWhatDoesNotFinish) {
     const std::int64_t id = submit(endless(create(ground_gltf(128))->id)).row.id;
-    wait(id, [&](const JobView&) { return farm->get_sector(id, {0, 0})->running; });
+    wait(id, [&](const JobView&) { return farm->get_sectors(id, {{0, 0}})->front().running; });
     farm->stop(100ms);
     farm.reset();
     open();
     EXPECT_EQ(farm->get_job(id)->row.state, JobState::running);
-    EXPECT_EQ(farm->get_sector(id, {0, 0})->row.failed_attempts, 0);
+    EXPECT_EQ(farm->get_sectors(id, {{0, 0}})->front().row.failed_attempts, 0);
 }
 
 TEST_F(FarmTest, ALostResultIsBakedAgainOnResubmit) {

@@ -82,6 +82,17 @@ TEST(PngTexts, AreReadBackAndShowNothing) {
     EXPECT_EQ(decoded->rgb, image.rgb);
 }
 
+TEST(PngDecoder, TakesAnEmptyChunkOfPixels) {
+    const Image image =
+        paint(7, 5, [](auto x, auto y, auto c) { return static_cast<std::uint8_t>(x + y + c); });
+    std::vector<std::uint8_t> png = encode_png(image).value();
+    const std::string chunk("\0\0\0\0IDAT\x35\xAF\x06\x1E", 12);
+    png.insert(png.begin() + 33, chunk.begin(), chunk.end());
+    const auto decoded = decode_png(png);
+    ASSERT_TRUE(decoded) << decoded.error().sentence;
+    EXPECT_EQ(decoded->rgb, image.rgb);
+}
+
 TEST(PngDecoder, AnyPrefixAndAnyChangedByteIsDefined) {
     const Image image =
         paint(7, 5, [](auto x, auto y, auto c) { return static_cast<std::uint8_t>(31 * x + y + 7 * c); });

@@ -428,6 +428,10 @@ TEST(BadInput, BrokenPictures) {
         return import_files({{"map.gltf", bytes_of(b.gltf())}, {"x.png", bytes}}, {"map.gltf"});
     };
     expect_accepted(import_picture(png));
+    FileBytes empty_chunk = png;
+    const std::string chunk("\0\0\0\0IDAT\x35\xAF\x06\x1E", 12);
+    empty_chunk.insert(empty_chunk.begin() + 33, chunk.begin(), chunk.end());
+    expect_accepted(import_picture(empty_chunk));
     for (std::size_t size = 0; size + 12 + 16 < png.size(); ++size)
         expect_refused(import_picture({png.begin(), png.begin() + static_cast<std::ptrdiff_t>(size)}),
                        {"map.gltf", "image 0", "x.png"});

@@ -226,6 +226,21 @@ TEST_F(ServiceTest, WatchEndsWithTheJobAndPullGivesItsFiles) {
     for (const auto& [sha256, bytes] : bytes_of)
         EXPECT_EQ(blob_of(bytes).sha256(), sha256);
     EXPECT_EQ(bytes_of.size(), 4u);
+
+    // The same files in packs, to a client that takes them.
+    pull.set_takes_packs(true);
+    grpc::ClientContext packed_context;
+    const auto packs = sectors_->PullSectors(&packed_context, pull);
+    std::map<std::string, std::string> packed;
+    int messages = 0;
+    for (; packs->Read(&message); ++messages) {
+        EXPECT_FALSE(message.has_sector());
+        for (const v1::PackedFile& file : message.pack())
+            packed[file.sha256()] = file.data();
+    }
+    ASSERT_TRUE(packs->Finish().ok());
+    EXPECT_EQ(messages, 1);
+    EXPECT_EQ(packed, bytes_of);
 }
 
 TEST_F(ServiceTest, ListsComeInPages) {
