@@ -6,14 +6,18 @@
 
 #include <grpcpp/grpcpp.h>
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace drtv::client {
 
-cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
-                                    const std::string& job,
-                                    const std::string& folder,
-                                    bool replace) {
+namespace {
+
+cli::Result<cli::ExitCode> pull_into(ServerConnection& connection,
+                                     const std::string& job,
+                                     const std::string& folder,
+                                     bool replace) {
     if (auto made = folder::make_folder(folder); !made)
         return tl::unexpected(made.error());
     // As it is before the files are asked for: what ends in the meantime is not missed then.
@@ -30,6 +34,20 @@ cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
         return tl::unexpected(pulled.error());
     pull->report();
     return end_of(*found);
+}
+
+}  // namespace
+
+cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
+                                    const std::string& job,
+                                    const std::string& folder,
+                                    bool replace) {
+    std::error_code code;
+    const bool was_there = std::filesystem::exists(folder, code);
+    auto pulled = pull_into(connection, job, folder, replace);
+    if (!pulled && !was_there)
+        std::filesystem::remove(folder, code);  // unless something is in it
+    return pulled;
 }
 
 }  // namespace drtv::client

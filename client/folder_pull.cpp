@@ -1,5 +1,6 @@
 #include "client/folder_pull.h"
 
+#include "client/earlier_files.h"
 #include "client/folder_lock.h"
 #include "client/folder_manifest.h"
 #include "client/job_text.h"
@@ -74,6 +75,14 @@ void FolderPull::look_at_folder() {
     std::error_code code;
     for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code))
         names_there_.insert(entry->path().filename().string());
+}
+
+bool FolderPull::all_are_there() {
+    look_at_folder();
+    const std::size_t gone = std::erase_if(here_, [this](const folder::SectorPlace& place) {
+        return !names_there_.contains(folder::sector_file_name(place.second, place.first));
+    });
+    return gone == 0;
 }
 
 // The server looks up the next page meanwhile, and no request grows with the map.
@@ -158,8 +167,21 @@ cli::Result<void> FolderPull::complete() {
     manifest_.files.clear();
     if (auto pulled = pull(); !pulled)
         return pulled;
-    leave_or_remove_earlier_files();
-    warn_of_strangers();
+    if (!all_are_there()) {
+        if (auto pulled = pull(); !pulled)
+            return pulled;
+        if (!all_are_there())
+            return cli::fail(
+                cli::exit_unreadable,
+                fmt::format("somebody removes sector files from {} while they are pulled", folder_));
+    }
+    if (earlier_) {
+        // A job of a region says nothing of the sectors around it.
+        const bool stay =
+            folder::are_of_one_map(*earlier_, manifest_) && (job_.has_region() || manifest_.unfinished > 0);
+        removed_ += settle_earlier_files(folder_, *earlier_, stay, manifest_);
+    }
+    warn_of_strangers(folder_, manifest_);
     folder::remove_leftovers(folder_);
     if (auto synced = folder::sync_folder(folder_); !synced)
         return synced;
@@ -185,55 +207,6 @@ bool FolderPull::is_missing(const v1::Sector& sector) {
 bool FolderPull::has_file(const folder::SectorPlace& place, const folder::ListedFile& listed) const {
     return names_there_.contains(folder::sector_file_name(place.second, place.first)) &&
            folder::difference_from_list(folder::sector_file_path(folder_, place), listed).empty();
-}
-
-// A job of a region says nothing of the sectors around it: their files stay, and the manifest says of which
-// map.
-void FolderPull::leave_or_remove_earlier_files() {
-    if (!earlier_)
-        return;
-    const bool stays =
-        folder::are_of_one_map(*earlier_, manifest_) && (job_.has_region() || manifest_.unfinished > 0);
-    std::int64_t changed = 0;
-    std::int64_t left = 0;
-    for (const auto& [place, file] : earlier_->files) {
-        if (manifest_.files.contains(place))
-            continue;
-        const std::string path = folder::sector_file_path(folder_, place);
-        std::error_code code;
-        if (!folder::difference_from_list(path, file).empty()) {
-            changed += fs::exists(path, code) ? 1 : 0;
-            continue;
-        }
-        if (stays) {
-            manifest_.files[place] = file;
-            ++left;
-        } else {
-            removed_ += fs::remove(path, code) ? 1 : 0;
-        }
-    }
-    if (left > 0 && earlier_->settings != manifest_.settings)
-        cli::warn(fmt::format("{} in {} stay, and were baked with other settings",
-                              counted(left, "file of an earlier pull", "files of earlier pulls"),
-                              folder_));
-    if (changed > 0)
-        cli::warn(
-            fmt::format("{} sector files in {} are no longer part of the map, and stay: somebody changed "
-                        "them since they were pulled",
-                        changed,
-                        folder_));
-}
-
-// Files that no pull has listed, which a game would load all the same.
-void FolderPull::warn_of_strangers() const {
-    const std::vector<std::string> strangers = folder::unlisted_files(folder_, manifest_);
-    if (strangers.empty())
-        return;
-    const auto count = static_cast<std::int64_t>(strangers.size());
-    cli::warn(fmt::format("{} in {} of no pull, the first {}: drtv validate refuses the folder with them",
-                          counted(count, "sector file is", "sector files are"),
-                          folder_,
-                          strangers.front()));
 }
 
 void FolderPull::report() const {

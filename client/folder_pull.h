@@ -46,6 +46,8 @@ class FolderPull {
     // As long as it takes a daemon that restarts.
     [[nodiscard]] cli::Result<void> pull();
     void look_at_folder();
+    // Whether nobody has removed one of the job's files.
+    [[nodiscard]] bool all_are_there();
     [[nodiscard]] cli::Result<void> pull_pages(FileWriters& writers);
     // Whether the sector is done, and the folder has no right file of it.
     [[nodiscard]] bool is_missing(const v1::Sector& sector);
@@ -54,8 +56,6 @@ class FolderPull {
     [[nodiscard]] cli::Result<void> begin();
     [[nodiscard]] cli::Result<void> write_begun();
     [[nodiscard]] cli::Result<void> complete();
-    void leave_or_remove_earlier_files();
-    void warn_of_strangers() const;
 
     ServerConnection& connection_;
     v1::Job job_;

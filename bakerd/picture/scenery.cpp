@@ -51,6 +51,7 @@ cli::Result<std::shared_ptr<const map::Map>> read_map(std::span<const std::strin
 }
 
 cli::Result<void> check_manifest(const std::string& folder, const map::Map& map) {
+    folder::warn_of_pull(folder);
     const auto manifest = folder::read_manifest(folder);
     if (!manifest)
         return tl::unexpected(manifest.error());

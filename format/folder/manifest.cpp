@@ -1,5 +1,6 @@
 #include "manifest.h"
 
+#include "cli/report.h"
 #include "sha256.h"
 #include "whole_file.h"
 
@@ -87,6 +88,12 @@ cli::Result<std::optional<FolderManifest>> read_manifest(const std::string& fold
         return cli::fail(cli::exit_invalid,
                          path + " is not the manifest of a pull: remove it, and pull the job again");
     }
+}
+
+void warn_of_pull(const std::string& folder) {
+    const auto manifest = read_manifest(folder);
+    if (manifest && *manifest && (*manifest)->pulling)
+        cli::warn("a pull into " + folder + " has begun, and not come to its end: files may be missing");
 }
 
 bool are_of_one_map(const FolderManifest& one, const FolderManifest& other) {

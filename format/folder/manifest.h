@@ -50,6 +50,10 @@ struct FolderManifest {
 // Nothing where the folder has none. Fails for one that cannot be read, or is none.
 [[nodiscard]] cli::Result<std::optional<FolderManifest>> read_manifest(const std::string& folder);
 
+// Warns where the manifest says that a pull is under way, or was cut off. Another fault of it is left to
+// `drtv validate`.
+void warn_of_pull(const std::string& folder);
+
 // Whether both are of versions of one map: they name a document of the same name, or share objects.
 [[nodiscard]] bool are_of_one_map(const FolderManifest& one, const FolderManifest& other);
 

@@ -66,32 +66,14 @@ cli::Result<FileBytes> read_file(const std::string& path) {
     return bytes;
 }
 
-namespace {
-
-// Reads to the end. REQUIRES: `file` is open.
-cli::Result<std::string> read_rest(std::FILE* file, const std::string& name) {
+cli::Result<std::string> read_standard_input() {
     std::string text;
     char buffer[65536];
-    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, stdin)) > 0;)
         text.append(buffer, n);
-    if (std::ferror(file) != 0)
-        return cannot_read(name);
+    if (std::ferror(stdin) != 0)
+        return cannot_read("standard input");
     return text;
-}
-
-}  // namespace
-
-cli::Result<std::string> read_text(const std::string& path) {
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (file == nullptr)
-        return cannot_read(path);
-    auto read = read_rest(file, path);
-    std::fclose(file);
-    return read;
-}
-
-cli::Result<std::string> read_standard_input() {
-    return read_rest(stdin, "standard input");
 }
 
 std::optional<std::pair<std::int32_t, std::int32_t>> sector_of_file(const std::string& path) {

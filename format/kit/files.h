@@ -21,7 +21,6 @@ using FilePaths = std::vector<std::string>;
 // All bytes of the file. Of one that does not begin as a sector file does, only the beginning.
 [[nodiscard]] cli::Result<FileBytes> read_file(const std::string& path);
 
-[[nodiscard]] cli::Result<std::string> read_text(const std::string& path);
 [[nodiscard]] cli::Result<std::string> read_standard_input();
 
 // The sector (i, j) that a file's header names, where it begins as a sector file does; nothing where it

@@ -2,6 +2,7 @@
 
 #include "cli/number_list.h"
 #include "files.h"
+#include "folder/whole_file.h"
 
 #include <algorithm>
 #include <array>
@@ -104,7 +105,7 @@ class Reader {
         if (!parse_time(*request_.time, hours))
             return refuse("--time takes a time of day such as 14:00, not \"" + *request_.time + "\"");
         if (request_.gradients) {
-            const auto text = read_text(*request_.gradients);
+            const auto text = folder::read_whole(*request_.gradients);
             if (!text)
                 return tl::unexpected(text.error());
             auto day = DayFile::read(*text);

@@ -1,6 +1,8 @@
 #include "cli/report.h"
 #include "commands.h"
 #include "diff_report.h"
+#include "dot_colour.h"
+#include "folder/manifest.h"
 #include "image/png_file.h"
 #include "kit/files.h"
 #include "region_picture.h"
@@ -38,16 +40,14 @@ Float3 change_colour(double change) {
         return same_colour;
     const double decades = std::log(change / min_shown_change);
     const double red_decades = std::log(red_change / min_shown_change);
-    const double share = std::clamp(decades / red_decades, 0.0, 1.0);
-    const double red = std::min(1.0, 2 * share);
-    const double green = std::min(1.0, 2 - 2 * share);
-    return {static_cast<float>(red), static_cast<float>(green), 0};
+    return traffic_light(static_cast<float>(std::clamp(decades / red_decades, 0.0, 1.0)));
 }
 
 cli::Result<Side> files_of(const std::string& path) {
     const auto files = kit::sector_files(path);
     if (!files)
         return tl::unexpected(files.error());
+    folder::warn_of_pull(path);
     Side side;
     for (const std::string& file : *files) {
         const auto sector = kit::load_sector(file);

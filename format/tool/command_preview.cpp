@@ -1,5 +1,6 @@
 #include "cli/report.h"
 #include "commands.h"
+#include "folder/manifest.h"
 #include "image/png_file.h"
 #include "kit/files.h"
 #include "region_picture.h"
@@ -40,6 +41,7 @@ cli::Result<cli::ExitCode> run_preview(const PreviewRequest& request) {
     const auto files = kit::sector_files(request.path);
     if (!files)
         return tl::unexpected(files.error());
+    folder::warn_of_pull(request.path);
     RegionPicture picture;
     bool lacks_quality = false;
     for (const std::string& file : *files) {

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "folder/manifest.h"
 #include "kit/files.h"
 
 #include <drtv/sky_tile.h>
@@ -15,6 +16,7 @@ cli::Result<cli::ExitCode> run_tiles(const TilesRequest& request) {
     const auto files = kit::sector_files(request.path);
     if (!files)
         return tl::unexpected(files.error());
+    folder::warn_of_pull(request.path);
     std::vector<SkyTile> tiles;
     std::map<std::pair<std::int32_t, std::int32_t>, std::string> known;
     for (const std::string& file : *files) {

@@ -79,11 +79,6 @@ Float3 own_light(const Sector& sector, std::size_t p) {
     return on_sphere(colours, all.mode);
 }
 
-// Green at 0, yellow half way, red from 1 on.
-Float3 traffic_light(float share) {
-    return {std::clamp(2 * share, 0.0f, 1.0f), std::clamp(2 - 2 * share, 0.0f, 1.0f), 0};
-}
-
 DotQuantity noon_relit() {
     const SceneLight light = noon();
     return {"",
@@ -199,6 +194,10 @@ cli::Result<DotQuantity> relit_at(const kit::LightRequest& request) {
 }
 
 }  // namespace
+
+Float3 traffic_light(float share) {
+    return {std::clamp(2 * share, 0.0f, 1.0f), std::clamp(2 - 2 * share, 0.0f, 1.0f), 0};
+}
 
 std::vector<std::string> dot_quantity_names() {
     std::vector<std::string> names;

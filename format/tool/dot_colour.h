@@ -35,6 +35,9 @@ struct DotQuantity {
 
 inline constexpr Float3 unknown_colour = {0.2f, 0.2f, 0.2f};
 
+// Green at 0, yellow half way, red from 1 on.
+[[nodiscard]] Float3 traffic_light(float share);
+
 [[nodiscard]] std::vector<std::string> dot_quantity_names();
 
 // `light` is that of "relit" alone; without a time it is a clear noon. Fails where the light cannot be read,

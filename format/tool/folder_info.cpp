@@ -114,6 +114,7 @@ cli::Result<cli::ExitCode> print_folder_info(const std::string& folder) {
     const auto files = kit::sector_files(folder);
     if (!files)
         return tl::unexpected(files.error());
+    folder::warn_of_pull(folder);
     Sums sums;
     for (const std::string& file : *files) {
         kit::FileBytes bytes;

@@ -1,6 +1,7 @@
 #include "relight_points.h"
 
 #include "cli/number_list.h"
+#include "folder/whole_file.h"
 #include "kit/files.h"
 
 #include <nlohmann/json.hpp>
@@ -73,7 +74,7 @@ cli::Result<std::vector<RelightPoint>> read_point(const std::string& at, const s
 }
 
 cli::Result<std::vector<RelightPoint>> read_points(const std::string& path) {
-    const auto file = path == "-" ? kit::read_standard_input() : kit::read_text(path);
+    const auto file = path == "-" ? kit::read_standard_input() : folder::read_whole(path);
     if (!file)
         return tl::unexpected(file.error());
     std::vector<RelightPoint> points;

@@ -1074,6 +1074,33 @@ class Pull(FarmTest):
                 self.assertIn("lost bakerd", done.stderr)
                 self.assertEqual(read_folder(folder), expected)
 
+    def test_a_file_removed_during_the_pull_comes_again(self):
+        daemon = self.farm.daemon()
+        expected = self.pulled(daemon, self.island(), *REGION, *FEW_RAYS, name="first")
+        folder = self.farm.path("second")
+        with cutting_proxy(daemon.address, 400_000) as address:
+            bake = subprocess.Popen(
+                [os.path.join(OPTIONS.bin, "bake"), "--server", address, "pull", "1", "--out", folder],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            # Its line breaks after some files, and it waits a moment.
+            self.assertIn("lost bakerd", bake.stderr.readline())
+            os.unlink(os.path.join(folder, sorted(read_folder(folder))[0]))
+            out, err = bake.communicate(timeout=60)
+        self.assertEqual(bake.returncode, 0, out + err)
+        self.assertTrue(read_folder(folder) == expected)
+
+    def test_a_pull_that_fails_leaves_no_folder_of_its_own(self):
+        daemon = self.farm.daemon()
+        made, known = self.farm.path("made"), self.farm.path("known")
+        os.mkdir(known)
+        for folder in (made, known):
+            done = self.farm.bake(daemon, "pull", "7", "--out", folder)
+            self.assert_sentence(done, "there is no job 7", status=USAGE)
+        self.assertEqual((os.path.exists(made), os.path.exists(known)), (False, True))
+
     def test_a_pull_that_cannot_write_ends(self):
         daemon = self.farm.daemon()
         self.pulled(daemon, self.island(), *REGION, *FEW_RAYS, name="first")
@@ -1140,6 +1167,10 @@ class Pull(FarmTest):
         self.assertEqual(state("--warnings-as-errors"), ("unfinished", INVALID))
         rewrite(manifest.replace('"unfinished": 0', '"unfinished": 0, "pulling": true'))
         self.assertEqual((state(), state("--quick")), (("pulling", INVALID), ("pulling", INVALID)))
+        for command in (["info", folder], ["preview", folder, "--out", self.farm.path("p.png")]):
+            done = self.farm.run("drtv", *command)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("a pull into", done.stderr)
         os.unlink(folder + "/sectors.json")
         self.assertEqual((state(), state("--whole")), (("no manifest", 0), ("no manifest", INVALID)))
         rewrite(manifest)
