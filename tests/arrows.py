@@ -56,7 +56,8 @@ ROOMS = {
     "bakerd/reuse": "bakerd/bake bakerd/trace bakerd/map placement settings format GLM TBB zstd fmt tl-expected",
     "bakerd/store": "bakerd/map map_files nlohmann_json fmt tl-expected",
     "bakerd/worker": "bakerd/reuse bakerd/bake bakerd/trace bakerd/store bakerd/map settings TBB nlohmann_json spdlog fmt tl-expected",
-    "bakerd/farm": "bakerd/worker bakerd/reuse bakerd/bake bakerd/store bakerd/map settings SQLite spdlog fmt tl-expected",
+    "bakerd/executor": "bakerd/worker bakerd/store spdlog fmt tl-expected",
+    "bakerd/farm": "bakerd/executor bakerd/worker bakerd/reuse bakerd/bake bakerd/store bakerd/map settings SQLite spdlog fmt tl-expected",
     "bakerd/service": "bakerd/farm bakerd/reuse bakerd/store bakerd/map map_files drtv/version.h settings/message settings proto gRPC protobuf fmt tl-expected",
     "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map map_files format/kit format/image format/folder format/cli format/light format/runtime format GLM TBB CLI11 fmt tl-expected",
     # main wires the rooms together and asks trace whether this CPU will do.

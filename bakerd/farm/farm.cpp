@@ -1,5 +1,6 @@
 #include "bakerd/farm/farm.h"
 
+#include "bakerd/executor/local_executor.h"
 #include "bakerd/farm/clock.h"
 #include "bakerd/farm/database.h"
 #include "bakerd/farm/job_store.h"
@@ -49,14 +50,16 @@ Result<void> Farm::load() {
 
 void Farm::start() {
     recorder_ = std::make_unique<Recorder>(*database_, *cache_, book_, [this] { executor_->wake(); });
-    LocalExecutor::Callbacks callbacks;
+    executor::Executor::Callbacks callbacks;
     callbacks.next = [this] { return book_.next(); };
-    callbacks.finished = [this](std::uint64_t id, int failed_attempts, Reply<worker::SectorResult> reply) {
-        if (auto finished = book_.finish(id, failed_attempts, std::move(reply)))
-            recorder_->record(std::move(*finished));
-    };
-    executor_ = std::make_unique<LocalExecutor>(
-        LocalExecutor::Options{.worker_command = options_.worker_command, .threads = options_.threads},
+    callbacks.finished =
+        [this](std::uint64_t id, int failed_attempts, executor::Reply<worker::SectorResult> reply) {
+            if (auto finished = book_.finish(id, failed_attempts, std::move(reply)))
+                recorder_->record(std::move(*finished));
+        };
+    executor_ = std::make_unique<executor::LocalExecutor>(
+        executor::LocalExecutor::Options{.worker_command = options_.worker_command,
+                                         .threads = options_.threads},
         std::move(callbacks));
     maps_ = std::make_unique<Maps>(*database_, *blobs_, *executor_);
     planner_ = std::make_unique<Planner>(*maps_, *cache_, *blobs_, *executor_);

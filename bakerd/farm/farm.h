@@ -2,10 +2,10 @@
 // memory and the executor; no gRPC. Thread-safe.
 #pragma once
 
+#include "bakerd/executor/executor.h"
 #include "bakerd/farm/data_folder.h"
 #include "bakerd/farm/job_book.h"
 #include "bakerd/farm/job_request.h"
-#include "bakerd/farm/local_executor.h"
 #include "bakerd/farm/plan.h"
 #include "bakerd/farm/records.h"
 #include "bakerd/farm/sector_views.h"
@@ -108,7 +108,7 @@ class Farm {
     std::unique_ptr<ResultCache> cache_;
     JobBook book_;
     std::unique_ptr<Recorder> recorder_;
-    std::unique_ptr<LocalExecutor> executor_;  // its thread calls the above
+    std::unique_ptr<executor::Executor> executor_;  // its thread calls the above
     std::unique_ptr<Maps> maps_;
     std::unique_ptr<Planner> planner_;
 };

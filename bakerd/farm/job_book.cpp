@@ -84,7 +84,7 @@ void JobBook::end_request(const std::string& request_id) {
     changed_.notify_all();
 }
 
-std::optional<SectorTask> JobBook::next() {
+std::optional<executor::SectorTask> JobBook::next() {
     const std::lock_guard lock(mutex_);
     while (!queue_.empty()) {
         const std::uint64_t id = queue_.front();
@@ -101,14 +101,14 @@ std::optional<SectorTask> JobBook::next() {
             job.started = Clock::now();
             changed(job);
         }
-        return SectorTask{id, task.request};
+        return executor::SectorTask{id, task.request};
     }
     return std::nullopt;
 }
 
 std::optional<FinishedSector> JobBook::finish(std::uint64_t id,
                                               int failed_attempts,
-                                              Reply<worker::SectorResult> reply) {
+                                              executor::Reply<worker::SectorResult> reply) {
     const std::lock_guard lock(mutex_);
     const auto found = tasks_.find(id);
     if (found == tasks_.end())

@@ -2,7 +2,7 @@
 // here has been written already, or cannot be, because the database is damaged. Thread-safe.
 #pragma once
 
-#include "bakerd/farm/local_executor.h"
+#include "bakerd/executor/executor.h"
 #include "bakerd/farm/records.h"
 
 #include <chrono>
@@ -53,7 +53,7 @@ struct FinishedSector {
     BakeKey key;
     std::vector<std::int64_t> jobs;
     int failed_attempts = 0;
-    Reply<worker::SectorResult> reply;
+    executor::Reply<worker::SectorResult> reply;
 };
 
 class JobBook {
@@ -74,12 +74,12 @@ class JobBook {
     void end_request(const std::string& request_id);
 
     // The next sector to bake; it is at work then.
-    [[nodiscard]] std::optional<SectorTask> next();
+    [[nodiscard]] std::optional<executor::SectorTask> next();
 
     // Ends the work on a sector, and says for whom it was done. Jobs may go on joining until all have left.
     [[nodiscard]] std::optional<FinishedSector> finish(std::uint64_t id,
                                                        int failed_attempts,
-                                                       Reply<worker::SectorResult> reply);
+                                                       executor::Reply<worker::SectorResult> reply);
     // Of those for whom it was recorded, nobody waits for the sector any more. Gives jobs that joined
     // meanwhile; the task is forgotten where there are none.
     [[nodiscard]] std::vector<std::int64_t> leave(std::uint64_t id, std::span<const std::int64_t> recorded);

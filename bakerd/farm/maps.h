@@ -1,7 +1,7 @@
 // The maps that the farm knows: manifests of files in the store, and what is in them. Thread-safe.
 #pragma once
 
-#include "bakerd/farm/local_executor.h"
+#include "bakerd/executor/executor.h"
 #include "bakerd/farm/records.h"
 #include "bakerd/store/blob_store.h"
 #include "bakerd/store/error.h"
@@ -14,7 +14,7 @@ class Database;
 class Maps {
   public:
     // REQUIRES: all outlive it.
-    Maps(Database& database, store::BlobStore& blobs, LocalExecutor& executor)
+    Maps(Database& database, store::BlobStore& blobs, executor::Executor& executor)
         : database_(database), blobs_(blobs), executor_(executor) {}
 
     // Has the worker import the map, unless it is known.
@@ -27,7 +27,7 @@ class Maps {
 
     Database& database_;
     store::BlobStore& blobs_;
-    LocalExecutor& executor_;
+    executor::Executor& executor_;
 };
 
 }  // namespace drtv::farm

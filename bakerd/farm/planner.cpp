@@ -40,7 +40,7 @@ store::Result<PlannedJob> Planner::plan(const JobRequest& request, CachePin& pin
 }
 
 // In portions, so that other questions are answered in between.
-Reply<worker::Assessments> Planner::ask(worker::AssessRequest question) {
+executor::Reply<worker::Assessments> Planner::ask(worker::AssessRequest question) {
     constexpr std::size_t portion = 1000;
     worker::Assessments all;
     for (std::size_t first = 0; first < question.sectors.size(); first += portion) {

@@ -25,7 +25,7 @@ JobRow ended(JobRow job, JobState state) {
     return job;
 }
 
-Reply<worker::SectorResult> failure() {
+executor::Reply<worker::SectorResult> failure() {
     return tl::unexpected(worker::RequestFailure{"it cannot be baked", false});
 }
 
@@ -49,7 +49,7 @@ TEST(JobBook, JobWaitsUntilASectorOfItIsTakenUp) {
 TEST(JobBook, ReopenedJobGetsATaskOfItsOwn) {
     JobBook book;
     book.add(running_job(), {&meadow, 1});
-    const SectorTask task = book.next().value();
+    const executor::SectorTask task = book.next().value();
     ASSERT_TRUE(book.finish(task.id, 3, failure()));
     book.update(ended(running_job(), JobState::failed));
     book.reopen(running_job(), {&meadow, 1});

@@ -32,7 +32,7 @@ class RecorderTest : public BooksTest {
     }
     // The next sector of the queue as if it had been baked.
     FinishedSector bake_next() {
-        const SectorTask task = book.next().value();
+        const executor::SectorTask task = book.next().value();
         return book.finish(task.id, 0, result("file " + std::to_string(task.id))).value();
     }
     JobView wait(std::int64_t id, const std::function<bool(const JobView&)>& enough) {
@@ -137,7 +137,7 @@ TEST_F(RecorderTest, AFileThatLeftTheStoreBeforeItWasRecordedIsBakedAgain) {
 
 TEST_F(RecorderTest, AFailureIsTheSectors) {
     const JobRow job = add({{0, 0}});
-    const SectorTask task = book.next().value();
+    const executor::SectorTask task = book.next().value();
     recorder->record(
         book.finish(task.id, 3, tl::unexpected(worker::RequestFailure{"it burnt", false})).value());
     EXPECT_EQ(wait(job.id, has_ended).row.error, "1 of 1 sectors failed; sector (0, 0): it burnt");

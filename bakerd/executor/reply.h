@@ -8,7 +8,7 @@
 
 #include <tl/expected.hpp>
 
-namespace drtv::farm {
+namespace drtv::executor {
 
 // What was asked for, or why it could not be done.
 template <class Answer>
@@ -24,4 +24,4 @@ template <class Answer, class Outcome>
     return tl::unexpected(worker::RequestFailure{"the worker gave an answer to another question", false});
 }
 
-}  // namespace drtv::farm
+}  // namespace drtv::executor

@@ -17,7 +17,7 @@
 #include <thread>
 #include <utility>
 
-#include "tests/farm/fake_worker.h"
+#include "tests/executor/fake_worker.h"
 
 namespace {
 

@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-namespace drtv::farm {
+namespace drtv::executor {
 
 class WorkerProcess {
   public:
@@ -63,4 +63,4 @@ class WorkerProcess {
     std::thread writer_;
 };
 
-}  // namespace drtv::farm
+}  // namespace drtv::executor

@@ -1,11 +1,11 @@
-#include "bakerd/farm/local_executor.h"
+#include "bakerd/executor/local_executor.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 
-namespace drtv::farm {
+namespace drtv::executor {
 namespace {
 
 const worker::RequestFailure stopping{"the server is stopping", true};
@@ -244,4 +244,4 @@ void LocalExecutor::send(Work work) {
     worker_->send({id, entry->second.what});
 }
 
-}  // namespace drtv::farm
+}  // namespace drtv::executor

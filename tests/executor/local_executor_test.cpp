@@ -1,5 +1,5 @@
-#include "bakerd/farm/local_executor.h"
-#include "tests/farm/fake_worker.h"
+#include "bakerd/executor/local_executor.h"
+#include "tests/executor/fake_worker.h"
 #include "tests/store/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <set>
 #include <thread>
 
-namespace drtv::farm {
+namespace drtv::executor {
 namespace {
 
 using namespace std::chrono_literals;
@@ -317,4 +317,4 @@ TEST_F(LocalExecutorTest, WorkerThatDoesNotReadHoldsNobodyUp) {
 }
 
 }  // namespace
-}  // namespace drtv::farm
+}  // namespace drtv::executor

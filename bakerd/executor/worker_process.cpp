@@ -1,4 +1,4 @@
-#include "bakerd/farm/worker_process.h"
+#include "bakerd/executor/worker_process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 
 extern char** environ;
 
-namespace drtv::farm {
+namespace drtv::executor {
 namespace {
 
 std::string describe_exit(int status) {
@@ -160,4 +160,4 @@ void WorkerProcess::read_answers() {
     events_.died(describe_exit(status));
 }
 
-}  // namespace drtv::farm
+}  // namespace drtv::executor

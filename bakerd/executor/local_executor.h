@@ -2,9 +2,8 @@
 // those requests are tried again one by one, so that the guilty one is found and fails alone.
 #pragma once
 
-#include "bakerd/farm/reply.h"
-#include "bakerd/farm/worker_process.h"
-#include "bakerd/worker/requests.h"
+#include "bakerd/executor/executor.h"
+#include "bakerd/executor/worker_process.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -21,20 +20,9 @@
 #include <variant>
 #include <vector>
 
-#include <tl/expected.hpp>
+namespace drtv::executor {
 
-namespace drtv::farm {
-
-// A sector to bake; `id` is the caller's.
-struct SectorTask {
-    std::uint64_t id = 0;
-    worker::BakeRequest request;
-};
-
-// A request is tried this often; two retries after the first failure.
-inline constexpr int max_attempts = 3;
-
-class LocalExecutor {
+class LocalExecutor final : public Executor {
   public:
     struct Options {
         std::vector<std::string> worker_command;
@@ -43,30 +31,17 @@ class LocalExecutor {
         // expensive sector that settings allow takes minutes.
         std::chrono::milliseconds stall_limit = std::chrono::minutes(30);
     };
-    // Called from the executor's own thread, never under its lock.
-    struct Callbacks {
-        std::function<std::optional<SectorTask>()> next;
-        std::function<void(std::uint64_t id, int failed_attempts, Reply<worker::SectorResult> reply)>
-            finished;
-    };
-
     LocalExecutor(Options options, Callbacks callbacks);
 
     // Stops without patience.
-    ~LocalExecutor();
+    ~LocalExecutor() override;
     LocalExecutor(const LocalExecutor&) = delete;
     LocalExecutor& operator=(const LocalExecutor&) = delete;
 
-    // There may be a sector to bake behind `next`, which the executor asks whenever it has room.
-    void wake();
-
-    // The worker answers these before any waiting sector.
-    [[nodiscard]] std::future<Reply<worker::MapSummary>> inspect(worker::InspectRequest question);
-    [[nodiscard]] std::future<Reply<worker::Assessments>> assess(worker::AssessRequest question);
-
-    // Takes no more work, waits at most `patience` until what is in flight has finished, then ends the
-    // worker. What was not finished is not reported; open and later questions are answered with a refusal.
-    void stop(std::chrono::milliseconds patience);
+    void wake() override;
+    [[nodiscard]] std::future<Reply<worker::MapSummary>> inspect(worker::InspectRequest question) override;
+    [[nodiscard]] std::future<Reply<worker::Assessments>> assess(worker::AssessRequest question) override;
+    void stop(std::chrono::milliseconds patience) override;
 
   private:
     using What = decltype(worker::Request::what);
@@ -120,4 +95,4 @@ class LocalExecutor {
     std::thread thread_;
 };
 
-}  // namespace drtv::farm
+}  // namespace drtv::executor
