@@ -26,6 +26,7 @@ namespace {
 
 struct ServeOptions {
     std::string data;
+    std::string store;
     std::string listen = "127.0.0.1:7447";
     std::string executor = "local";
     int threads = 0;
@@ -57,11 +58,12 @@ cli::Result<cli::ExitCode> serve(const ServeOptions& options) {
                             ? options.threads
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-    auto farm = farm::Farm::open(
-        {options.data,
-         {self, "worker", "--blobs", options.data + "/blobs", "--threads", std::to_string(threads)},
-         threads,
-         options.cache_bytes});
+    const std::string blobs = (options.store.empty() ? options.data : options.store) + "/blobs";
+    auto farm = farm::Farm::open({options.data,
+                                  {self, "worker", "--blobs", blobs, "--threads", std::to_string(threads)},
+                                  threads,
+                                  options.cache_bytes,
+                                  options.store});
     if (!farm)
         return cli::fail(cli::exit_unreadable, farm.error().message);
     auto server = service::Server::start(
@@ -86,8 +88,11 @@ cli::Result<cli::ExitCode> serve(const ServeOptions& options) {
 void add_serve(CLI::App& app, Arguments& to) {
     ServeOptions& options = to.serve;
     CLI::App* serve_command = app.add_subcommand("serve", "Serve clients until SIGTERM or ctrl-C");
-    serve_command->add_option("--data", options.data, "Folder for database and blobs; made when missing")
+    serve_command
+        ->add_option("--data", options.data, "Local folder for the database, and blobs; made when missing")
         ->required();
+    serve_command->add_option(
+        "--store", options.store, "Folder for blobs, which may be on a network; default: within --data");
     serve_command
         ->add_option("--listen", options.listen, "Address and port; anything but loopback should have TLS")
         ->capture_default_str();

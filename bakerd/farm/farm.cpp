@@ -9,6 +9,7 @@
 #include "bakerd/farm/planner.h"
 #include "bakerd/farm/recorder.h"
 #include "bakerd/farm/result_cache.h"
+#include "bakerd/store/owner.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -19,6 +20,22 @@ using store::ErrorCode;
 using store::fail;
 using store::Result;
 
+namespace {
+
+// A store serves one daemon: what another one evicts would be missed.
+Result<std::unique_ptr<store::BlobStore>> open_store(const Farm::Options& options, const DataFolder& folder) {
+    if (options.store_folder.empty())
+        return store::BlobStore::open(folder.path() + "/blobs");
+    const auto id = folder.id();
+    if (!id)
+        return tl::unexpected(id.error());
+    if (auto claimed = store::claim_folder(options.store_folder, *id); !claimed)
+        return tl::unexpected(claimed.error());
+    return store::BlobStore::open(options.store_folder + "/blobs");
+}
+
+}  // namespace
+
 Farm::Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<store::BlobStore> blobs)
     : options_(std::move(options)), folder_(std::move(folder)), blobs_(std::move(blobs)) {}
 
@@ -26,7 +43,7 @@ Result<std::unique_ptr<Farm>> Farm::open(Options options) {
     auto folder = DataFolder::lock(options.data_folder);
     if (!folder)
         return tl::unexpected(folder.error());
-    auto blobs = store::BlobStore::open((*folder)->blobs());
+    auto blobs = open_store(options, **folder);
     if (!blobs)
         return tl::unexpected(blobs.error());
     (*blobs)->remove_leftovers();

@@ -1,12 +1,14 @@
 #include "bakerd/store/blob_store.h"
 
+#include "bakerd/store/temporary_name.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 
@@ -59,13 +61,6 @@ bool sync_folder(const std::string& folder) {
     return file.is_open() && ::fsync(file.get()) == 0;
 }
 
-// Unique among the living threads and processes of one machine; a dead one may have left the same name
-// behind.
-std::string temporary_name() {
-    static std::atomic<std::uint64_t> counter{0};
-    return fmt::format("{}.{}", ::getpid(), counter++);
-}
-
 }  // namespace
 
 Result<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& folder) {
@@ -80,11 +75,20 @@ Result<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& folder) {
 }
 
 void BlobStore::remove_leftovers() const {
+    constexpr std::chrono::hours old{24};
+    // The clock of the folder's own machine may be another one than ours.
+    const std::string probe = fmt::format("{}/tmp/{}", folder_, temporary_name());
     std::error_code code;
+    if (!FileDescriptor(::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666)).is_open())
+        return;
+    const fs::file_time_type now = fs::last_write_time(probe, code);
+    fs::remove(probe, code);
     for (fs::directory_iterator entry(folder_ + "/tmp", code), end; !code && entry != end;
          entry.increment(code)) {
         std::error_code ignored;
-        fs::remove(entry->path(), ignored);
+        const bool is_old = now - fs::last_write_time(entry->path(), ignored) > old && !ignored;
+        if (is_old || is_of_dead_process(entry->path().filename().string()))
+            fs::remove(entry->path(), ignored);
     }
 }
 

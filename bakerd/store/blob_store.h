@@ -24,9 +24,8 @@ class BlobStore {
     // `folder` must exist; its parts are made when needed.
     [[nodiscard]] static Result<std::unique_ptr<BlobStore>> open(const std::string& folder);
 
-    // Temporary files of processes that died at work.
-    // REQUIRES: nobody is writing to the folder (the daemon calls it under the data folder's lock, before any
-    // worker).
+    // Temporary files of this machine's processes that died at work, and of any machine's after a day: other
+    // machines may be writing to the folder.
     void remove_leftovers() const;
 
     [[nodiscard]] Result<Digest> put(std::span<const std::uint8_t> bytes);

@@ -1449,6 +1449,27 @@ class Daemon(FarmTest):
         self.assertEqual(self.farm.bake(daemon, "list").stdout.count("\n"), 1)
 
 
+class Store(FarmTest):
+    """Blobs beside the data folder."""
+
+    def test_a_store_of_its_own_holds_all_but_the_database(self):
+        store, data = self.farm.path("share/store"), self.farm.path("data")
+        daemon = self.farm.daemon("data", "--store", store)
+        lawn = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        pulled = self.pulled(daemon, lawn, *FEW_RAYS)
+        self.assertEqual(len(pulled), 1)
+        digest = hashlib.sha256(pulled["sector_0_0.drtv"]).hexdigest()
+        self.assertTrue(os.path.exists(f"{store}/blobs/objects/{digest[:2]}/{digest}"))
+        self.assertFalse(os.path.exists(data + "/blobs"))
+        # It is found again after a restart, and serves no other daemon.
+        daemon.stop()
+        daemon.start()
+        done = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("again"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        refused = self.farm.run("bakerd", "serve", "--data", self.farm.path("other"), "--store", store)
+        self.assert_sentence(refused, "belongs to another daemon's data folder", store, status=UNREADABLE)
+
+
 class Incremental(FarmTest):
     def job_of(self, daemon, *arguments, name="pulled"):
         """Submits and pulls; gives the job at its end."""

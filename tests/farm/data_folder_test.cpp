@@ -40,6 +40,24 @@ TEST(DataFolder, AFormerOwnersLongerNumberIsGone) {
         << second.error().message;
 }
 
+TEST(DataFolder, ItsIdStays) {
+    const test::TemporaryFolder one, other;
+    const std::string id = DataFolder::lock(one.path()).value()->id().value();
+    EXPECT_EQ(id.size(), 16u);
+    EXPECT_EQ(DataFolder::lock(one.path()).value()->id(), id);
+    EXPECT_NE(DataFolder::lock(other.path()).value()->id(), id);
+}
+
+// No such file system can be mounted here: the numbers are those of statfs(2).
+TEST(DataFolder, FileSystemsOverANetworkAreKnown) {
+    EXPECT_EQ(network_file_system(0x6969), "NFS");
+    EXPECT_EQ(network_file_system(0xFF534D42), "SMB");
+    EXPECT_EQ(network_file_system(0x0BD00BD0), "Lustre");
+    EXPECT_EQ(network_file_system(0x00C36400), "Ceph");
+    EXPECT_EQ(network_file_system(0xEF53), "");      // ext4
+    EXPECT_EQ(network_file_system(0x01021994), "");  // tmpfs
+}
+
 TEST(DataFolder, APlaceThatCannotBeWrittenIsASentence) {
     const test::TemporaryFolder folder;
     test::write_file(folder.path() + "/file", "");

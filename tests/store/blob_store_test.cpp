@@ -1,10 +1,13 @@
 #include "bakerd/store/blob_store.h"
 #include "tests/store/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/mount.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -79,15 +82,40 @@ TEST_F(BlobStoreTest, ADamagedBlobIsRemovedAndReported) {
     EXPECT_TRUE(store->put(bytes_of("abc")));
 }
 
-TEST_F(BlobStoreTest, ADeadProcessesTemporaryIsNoObstacleAndIsRemoved) {
+std::string this_host() {
+    char name[256] = {};
+    EXPECT_EQ(::gethostname(name, sizeof name - 1), 0);
+    return name;
+}
+
+TEST_F(BlobStoreTest, ADeadProcessesTemporaryIsNoObstacle) {
     // The same number may come again after a restart; the names count from anywhere.
     for (int n = 0; n < 200; ++n)
-        test::write_file(folder.path() + "/tmp/" + std::to_string(::getpid()) + "." + std::to_string(n),
+        test::write_file(fmt::format("{}/tmp/{}.{}.{}", folder.path(), this_host(), ::getpid(), n),
                          "left behind");
     EXPECT_TRUE(store->put(bytes_of("new")));
-    store->remove_leftovers();
-    EXPECT_EQ(temporaries(), 0u);
     EXPECT_TRUE(store->has(map::digest_of(bytes_of("new"))));
+}
+
+TEST_F(BlobStoreTest, LeftoversGoAndWhatOthersAreWritingStays) {
+    const pid_t dead = ::fork();
+    if (dead == 0)
+        ::_exit(0);
+    ASSERT_EQ(::waitpid(dead, nullptr, 0), dead);
+    const auto temporary = [&](const std::string& host, pid_t pid) {
+        const std::string path = fmt::format("{}/tmp/{}.{}.0", folder.path(), host, pid);
+        test::write_file(path, "half");
+        return path;
+    };
+    const std::string of_the_dead = temporary(this_host(), dead), of_the_living = temporary(this_host(), 1);
+    const std::string elsewhere = temporary(this_host() + "-2", dead), old = temporary("far", 1);
+    fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(25));
+    store->remove_leftovers();
+    EXPECT_FALSE(fs::exists(of_the_dead));
+    EXPECT_TRUE(fs::exists(of_the_living));
+    EXPECT_TRUE(fs::exists(elsewhere));
+    EXPECT_FALSE(fs::exists(old));
+    EXPECT_EQ(temporaries(), 2u);
 }
 
 TEST_F(BlobStoreTest, ManyThreadsPutTheSameBlobs) {

@@ -1,0 +1,34 @@
+#include "bakerd/store/owner.h"
+#include "tests/store/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+namespace drtv::store {
+namespace {
+
+TEST(ClaimFolder, IsTheFirstOnesForGood) {
+    const test::TemporaryFolder folder;
+    const std::string store = folder.path() + "/a/b";
+    EXPECT_TRUE(claim_folder(store, "one"));
+    EXPECT_TRUE(claim_folder(store, "one"));
+    const auto refused = claim_folder(store, "two");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::failed_precondition);
+    EXPECT_NE(refused.error().message.find(store + "/owner"), std::string::npos) << refused.error().message;
+}
+
+TEST(ClaimFolder, WhoDiedOverIt) {
+    const test::TemporaryFolder folder;
+    test::write_file(folder.path() + "/owner", "");
+    EXPECT_TRUE(claim_folder(folder.path(), "one"));
+    EXPECT_FALSE(claim_folder(folder.path(), "two"));
+}
+
+TEST(ClaimFolder, APlaceThatCannotBeWrittenIsASentence) {
+    const auto claimed = claim_folder("/proc/drtv", "one");
+    ASSERT_FALSE(claimed);
+    EXPECT_NE(claimed.error().message.find("/proc/drtv"), std::string::npos) << claimed.error().message;
+}
+
+}  // namespace
+}  // namespace drtv::store
