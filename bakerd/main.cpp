@@ -4,7 +4,7 @@
 #include "bakerd/picture/render_request.h"
 #include "bakerd/service/server.h"
 #include "bakerd/trace/device.h"
-#include "bakerd/worker/worker.h"
+#include "bakerd/worker/run_worker.h"
 #include "format/cli/option_checks.h"
 #include "format/cli/parse.h"
 #include "format/cli/report.h"

@@ -1,5 +1,6 @@
 #include "bakerd/store/blob_store.h"
 
+#include "bakerd/store/durable_file.h"
 #include "bakerd/store/temporary_name.h"
 
 #include <fcntl.h>
@@ -7,61 +8,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
 
 namespace drtv::store {
-namespace {
 
 namespace fs = std::filesystem;
-
-tl::unexpected<Error> file_error(const std::string& what, const std::string& path) {
-    const int code = errno;
-    const ErrorCode kind =
-        code == ENOSPC || code == EDQUOT ? ErrorCode::resource_exhausted : ErrorCode::internal;
-    return fail(kind, fmt::format("cannot {} {}: {}", what, path, std::strerror(code)));
-}
-
-bool write_all(int fd, std::span<const std::uint8_t> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t n = ::write(fd, bytes.data(), bytes.size());
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return false;
-        bytes = bytes.subspan(static_cast<std::size_t>(n));
-    }
-    return true;
-}
-
-Result<std::vector<std::uint8_t>> read_all(const std::string& path) {
-    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    struct stat status {};
-    if (!file.is_open() || ::fstat(file.get(), &status) != 0)
-        return file_error("read", path);
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(status.st_size));
-    std::size_t at = 0;
-    while (at < bytes.size()) {
-        const ssize_t n = ::read(file.get(), bytes.data() + at, bytes.size() - at);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n < 0)
-            return file_error("read", path);
-        if (n == 0)
-            bytes.resize(at);  // cut short meanwhile: the digest will tell
-        at += static_cast<std::size_t>(n);
-    }
-    return bytes;
-}
-
-bool sync_folder(const std::string& folder) {
-    const FileDescriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    return file.is_open() && ::fsync(file.get()) == 0;
-}
-
-}  // namespace
 
 Result<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& folder) {
     for (const char* part : {"objects", "tmp", "uploads"}) {
@@ -105,39 +57,12 @@ bool BlobStore::has(const Digest& digest) const {
     return ::access(path_of(digest).c_str(), R_OK) == 0;
 }
 
-Result<void> BlobStore::publish(const std::string& temporary, const Digest& digest) const {
-    const std::string path = path_of(digest), folder = path.substr(0, path.rfind('/'));
-    if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST)
-        return file_error("make the folder", folder);
-    if (::rename(temporary.c_str(), path.c_str()) != 0)
-        return file_error("write", path);
-    if (!sync_folder(folder) || !sync_folder(folder_ + "/objects"))
-        return file_error("sync", folder);
-    return {};
-}
-
 Result<Digest> BlobStore::put(std::span<const std::uint8_t> bytes) {
     const Digest digest = map::digest_of(bytes);
     if (has(digest))
         return digest;
-    std::string temporary;
-    FileDescriptor file;
-    do {
-        temporary = fmt::format("{}/tmp/{}", folder_, temporary_name());
-        file.reset(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    } while (!file.is_open() && errno == EEXIST);
-    if (!file.is_open())
-        return file_error("write", temporary);
-    const bool written = write_all(file.get(), bytes) && ::fsync(file.get()) == 0;
-    if (!written || ::close(file.release()) != 0) {
-        auto error = file_error("write", temporary);
-        ::unlink(temporary.c_str());
-        return error;
-    }
-    if (auto published = publish(temporary, digest); !published) {
-        ::unlink(temporary.c_str());
-        return tl::unexpected(published.error());
-    }
+    if (auto written = write_durably(folder_ + "/tmp", path_of(digest), bytes); !written)
+        return tl::unexpected(written.error());
     return digest;
 }
 
@@ -225,7 +150,7 @@ Result<void> BlobStore::Upload::finish() {
         return fail(ErrorCode::invalid_argument,
                     fmt::format("the uploaded bytes do not have the digest {}", to_hex(digest_)));
     }
-    return store_->publish(part, digest_);
+    return rename_durably(part, store_->path_of(digest_));
 }
 
 }  // namespace drtv::store

@@ -74,7 +74,6 @@ class BlobStore {
     explicit BlobStore(std::string folder) : folder_(std::move(folder)) {}
     [[nodiscard]] std::string path_of(const Digest& digest) const;
     [[nodiscard]] std::string part_path(const Digest& digest) const;
-    [[nodiscard]] Result<void> publish(const std::string& temporary, const Digest& digest) const;
 
     const std::string folder_;
     mutable std::mutex mutex_;
