@@ -4,6 +4,7 @@
 #include "bakerd/picture/render_request.h"
 #include "bakerd/service/server.h"
 #include "bakerd/trace/device.h"
+#include "bakerd/worker/run_batch.h"
 #include "bakerd/worker/run_worker.h"
 #include "format/cli/option_checks.h"
 #include "format/cli/parse.h"
@@ -38,6 +39,7 @@ struct ServeOptions {
 struct Arguments {
     ServeOptions serve;
     worker::Options worker;
+    worker::BatchOptions batch;
     picture::RenderRequest render;
     // The command. Set when the line has been parsed.
     std::function<cli::Result<cli::ExitCode>()> run;
@@ -137,6 +139,28 @@ void add_worker(CLI::App& app, Arguments& to) {
     });
 }
 
+void add_task(CLI::App& app, Arguments& to) {
+    worker::BatchOptions& batch = to.batch;
+    CLI::App* command = app.add_subcommand("task", "Bake a batch of sectors (started by a cluster)");
+    command->add_option("--store", batch.store_folder, "The daemon's --store")->required();
+    command->add_option("--array", batch.array, "File that lists the sectors")->required();
+    command->add_option("--task", batch.task, "Which of its batches")
+        ->envname("SLURM_ARRAY_TASK_ID")
+        ->required();
+    command->add_option("--threads", batch.threads, "Threads to bake with; 0: all")
+        ->envname("SLURM_CPUS_PER_TASK")
+        ->check(cli::whole_number(0, 1024));
+    command->add_option("--node", batch.node, "Name of this node")->envname("SLURMD_NODENAME");
+    command->add_option("--log", batch.log, "File that standard error goes to");
+    command->callback([&to] {
+        to.run = [&to]() -> cli::Result<cli::ExitCode> {
+            if (auto ran = worker::run_batch(to.batch); !ran)
+                return cli::fail(cli::exit_unreadable, ran.error());
+            return cli::exit_done;
+        };
+    });
+}
+
 void add_render(CLI::App& app, Arguments& to) {
     CLI::App* command = app.add_subcommand("render", "Picture of a map in the light of its sector files");
     picture::add_render(*command, to.render);
@@ -167,6 +191,7 @@ int main(int argc, char** argv) {
     Arguments arguments;
     add_serve(app, arguments);
     add_worker(app, arguments);
+    add_task(app, arguments);
     add_render(app, arguments);
     if (const auto ended = cli::parse(app, argc, argv))
         return *ended;

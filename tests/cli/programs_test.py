@@ -25,7 +25,7 @@ COMMANDS = {
         "pull",
         "cache",
     ],
-    "bakerd": ["serve", "worker", "render"],
+    "bakerd": ["serve", "worker", "task", "render"],
 }
 # Nobody listens there.
 NOWHERE = "127.0.0.1:1"

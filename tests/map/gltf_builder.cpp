@@ -147,10 +147,6 @@ tl::expected<map::Map, std::string> import_files(const Files& files, const std::
     return map::import_map(paths, source_of(files));
 }
 
-FileBytes bytes_of(std::string_view text) {
-    return {text.begin(), text.end()};
-}
-
 FileBytes glb_of(const std::string& json, std::span<const std::uint8_t> bin) {
     const auto padded = [](std::size_t size) { return static_cast<std::uint32_t>((size + 3) / 4 * 4); };
     FileBytes glb = bytes_of("glTF");

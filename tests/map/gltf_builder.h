@@ -11,6 +11,7 @@
 
 #include "bakerd/map/file_source.h"
 #include "bakerd/map/map.h"
+#include "tests/store/bytes_of.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -88,7 +89,6 @@ using Files = std::map<std::string, FileBytes>;
 [[nodiscard]] map::FileSource source_of(Files files);
 [[nodiscard]] tl::expected<map::Map, std::string> import_files(const Files& files,
                                                                const std::vector<std::string>& paths);
-[[nodiscard]] FileBytes bytes_of(std::string_view text);
 // A GLB of these chunks, padded as the format asks; no BIN chunk when `bin` is empty.
 [[nodiscard]] FileBytes glb_of(const std::string& json, std::span<const std::uint8_t> bin);
 

@@ -20,10 +20,6 @@ TemporaryFolder::~TemporaryFolder() {
     fs::remove_all(path_, code);
 }
 
-std::vector<std::uint8_t> bytes_of(std::string_view text) {
-    return {text.begin(), text.end()};
-}
-
 std::vector<std::uint8_t> noise(std::size_t size, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::vector<std::uint8_t> bytes(size);

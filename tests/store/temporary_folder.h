@@ -1,6 +1,8 @@
 // A folder for one test, gone with it, and bytes to fill it with.
 #pragma once
 
+#include "tests/store/bytes_of.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -22,7 +24,6 @@ class TemporaryFolder {
     std::string path_;
 };
 
-[[nodiscard]] std::vector<std::uint8_t> bytes_of(std::string_view text);
 // Differ for each seed.
 [[nodiscard]] std::vector<std::uint8_t> noise(std::size_t size, std::uint32_t seed);
 

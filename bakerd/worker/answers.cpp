@@ -1,0 +1,115 @@
+#include "bakerd/worker/answers.h"
+
+#include "bakerd/store/durable_file.h"
+#include "bakerd/worker/protocol.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace drtv::worker {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace
+
+Digest answer_key(const BakeRequest& request) {
+    BakeRequest alone = request;
+    alone.earlier.reset();
+    return map::digest_of(bytes_of(encode(Request{0, std::move(alone)})));
+}
+
+store::Result<Answers> Answers::open(const std::string& store_folder) {
+    Answers answers(store_folder + "/answers");
+    std::error_code code;
+    fs::create_directories(answers.folder_ + "/tmp", code);
+    if (code)
+        return store::fail(store::ErrorCode::internal,
+                           fmt::format("cannot make the folder {}/tmp: {}", answers.folder_, code.message()));
+    return answers;
+}
+
+std::string Answers::folder_of(const std::string& hex) const {
+    return fmt::format("{}/{}", folder_, hex.substr(0, 2));
+}
+
+std::string Answers::path_of(const Digest& key) const {
+    const std::string hex = to_hex(key);
+    return fmt::format("{}/{}", folder_of(hex), hex);
+}
+
+// Two lines: the answer as a worker gives it, and what only a task has.
+store::Result<void> Answers::write(const Digest& key, const TaskAnswer& answer) const {
+    const std::string line = std::visit(
+        [](const auto& what) {
+            return encode(Answer{0, what});
+        },
+        answer.what);
+    const Json task = {
+        {"node", answer.node}, {"log", answer.log}, {"peak_memory_bytes", answer.peak_memory_bytes}};
+    const std::string text = line + "\n" + task.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return store::write_durably(folder_ + "/tmp", path_of(key), bytes_of(text));
+}
+
+std::set<Digest> Answers::among(const std::set<Digest>& keys) const {
+    std::set<Digest> found;
+    for (auto key = keys.begin(); key != keys.end();) {
+        const std::string folder = folder_of(to_hex(*key));
+        std::error_code code;
+        for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+            const auto name = map::digest_from_hex(entry->path().filename().string());
+            if (name && keys.contains(*name))
+                found.insert(*name);
+        }
+        // Keys are sorted: the next folder begins where the first byte changes.
+        const std::uint8_t first = key->bytes.front();
+        while (key != keys.end() && key->bytes.front() == first)
+            ++key;
+    }
+    return found;
+}
+
+std::optional<TaskAnswer> Answers::read(const Digest& key) const {
+    const auto bytes = store::read_all(path_of(key));
+    if (!bytes)
+        return std::nullopt;
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    const std::size_t line = text.find('\n');
+    const auto answer = decode_answer(text.substr(0, line));
+    if (!answer || line == text.npos)
+        return std::nullopt;
+    TaskAnswer read;
+    if (const auto* result = std::get_if<SectorResult>(&answer->what))
+        read.what = *result;
+    else if (const auto* failure = std::get_if<RequestFailure>(&answer->what))
+        read.what = *failure;
+    else
+        return std::nullopt;
+    try {
+        const Json task = Json::parse(text.substr(line + 1));
+        read.node = task.at("node").get<std::string>();
+        read.log = task.at("log").get<std::string>();
+        read.peak_memory_bytes = task.at("peak_memory_bytes").get<std::int64_t>();
+    } catch (const Json::exception&) {
+        return std::nullopt;
+    }
+    return read;
+}
+
+void Answers::remove(const Digest& key) const {
+    ::unlink(path_of(key).c_str());
+}
+
+}  // namespace drtv::worker

@@ -1,0 +1,95 @@
+#include "bakerd/worker/run_batch.h"
+
+#include "bakerd/worker/answers.h"
+#include "bakerd/worker/array_file.h"
+#include "bakerd/worker/bake_threads.h"
+#include "bakerd/worker/worker.h"
+
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+
+#include <cstdint>
+#include <mutex>
+#include <utility>
+
+namespace drtv::worker {
+namespace {
+
+std::int64_t peak_memory_bytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return std::int64_t{usage.ru_maxrss} * 1024;
+}
+
+class BatchRun {
+  public:
+    BatchRun(const BatchOptions& options, Answers answers, Worker& worker)
+        : options_(options), answers_(std::move(answers)), worker_(worker) {}
+
+    void bake(const BakeRequest& request) {
+        const Digest key = answer_key(request);
+        // Another copy of the task may have been here.
+        if (!answers_.among({key}).empty())
+            return;
+        TaskAnswer answer;
+        answer.node = options_.node;
+        answer.log = options_.log;
+        const auto what = worker_.answer({0, request}).what;
+        if (const auto* result = std::get_if<SectorResult>(&what)) {
+            answer.what = *result;
+            tell(request.sector, *result);
+        } else if (const auto* failure = std::get_if<RequestFailure>(&what)) {
+            answer.what = *failure;
+            spdlog::error("sector ({}, {}): {}", request.sector.i, request.sector.j, failure->sentence);
+        }
+        answer.peak_memory_bytes = peak_memory_bytes();
+        if (auto written = answers_.write(key, answer); !written) {
+            spdlog::error("sector ({}, {}): {}", request.sector.i, request.sector.j, written.error().message);
+            const std::lock_guard lock(mutex_);
+            failure_ = written.error().message;
+        }
+    }
+
+    // Of the last answer that could not be written; else empty.
+    [[nodiscard]] const std::string& failure() const { return failure_; }
+
+  private:
+    static void tell(const map::SectorCoordinate& sector, const SectorResult& result) {
+        spdlog::info(
+            "sector ({}, {}): {} probes in {:.1f} s", sector.i, sector.j, result.probes, result.seconds);
+        for (const std::string& warning : result.warnings)
+            spdlog::warn("sector ({}, {}): {}", sector.i, sector.j, warning);
+    }
+
+    const BatchOptions& options_;
+    const Answers answers_;
+    Worker& worker_;
+    std::mutex mutex_;
+    std::string failure_;  // guarded by mutex_
+};
+
+}  // namespace
+
+tl::expected<void, std::string> run_batch(const BatchOptions& options) {
+    auto batch = read_batch(options.array, options.task);
+    if (!batch)
+        return tl::unexpected(batch.error());
+    if (auto differs = difference(batch->build, this_build()); !differs.empty())
+        return tl::unexpected(std::move(differs));
+    auto answers = Answers::open(options.store_folder);
+    if (!answers)
+        return tl::unexpected(answers.error().message);
+    const auto worker = Worker::open(options.store_folder + "/blobs");
+    if (!worker)
+        return tl::unexpected(worker.error());
+    BatchRun run(options, std::move(*answers), **worker);
+    BakeThreads threads(options.threads);
+    for (const BakeRequest& request : batch->sectors)
+        threads.enqueue([&run, &request] { run.bake(request); });
+    threads.wait();
+    if (!run.failure().empty())
+        return tl::unexpected(run.failure());
+    return {};
+}
+
+}  // namespace drtv::worker
