@@ -6,6 +6,8 @@
 
 #include <grpcpp/grpcpp.h>
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -43,10 +45,10 @@ cli::Result<cli::ExitCode> run_pull(ServerConnection& connection,
                                     const std::string& folder,
                                     bool replace) {
     std::error_code code;
-    const bool was_there = std::filesystem::exists(folder, code);
+    const bool was_there = std::filesystem::exists(std::filesystem::symlink_status(folder, code));
     auto pulled = pull_into(connection, job, folder, replace);
     if (!pulled && !was_there)
-        std::filesystem::remove(folder, code);  // unless something is in it
+        ::rmdir(folder.c_str());  // unless something is in it
     return pulled;
 }
 

@@ -15,9 +15,8 @@ FileWriters::FileWriters(std::string folder, std::int64_t total) : folder_(std::
         thread = std::jthread([this] { run(); });
 }
 
-void FileWriters::skip() {
-    const std::lock_guard lock(mutex_);
-    ++skipped_;
+FileWriters::~FileWriters() {
+    static_cast<void>(finish());
 }
 
 cli::Result<void> FileWriters::push(ArrivedFile file) {
@@ -35,8 +34,10 @@ cli::Result<void> FileWriters::finish() {
         ended_ = true;
     }
     changed_.notify_all();
-    for (std::jthread& thread : threads_)
-        thread.join();
+    for (std::jthread& thread : threads_) {
+        if (thread.joinable())
+            thread.join();
+    }
     return result_;
 }
 
@@ -80,9 +81,8 @@ cli::Result<void> FileWriters::write(const ArrivedFile& file) const {
 }
 
 void FileWriters::show_progress() {
-    const std::size_t here = skipped_ + written_.size();
-    progress_.show(static_cast<double>(here) / static_cast<double>(total_),
-                   fmt::format("{}/{} sector files", here, total_));
+    progress_.show(static_cast<double>(written_.size()) / static_cast<double>(total_),
+                   fmt::format("pulled {}/{} sector files", written_.size(), total_));
 }
 
 }  // namespace drtv::client

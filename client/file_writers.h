@@ -26,11 +26,13 @@ struct ArrivedFile {
 // wait for it.
 class FileWriters {
   public:
-    // `total`: the files that the folder will have, which the progress bar counts up to.
+    // `total`: how many there will be, for the progress bar.
     FileWriters(std::string folder, std::int64_t total);
 
-    // One of them is there already.
-    void skip();
+    // As finish().
+    ~FileWriters();
+    FileWriters(const FileWriters&) = delete;
+    FileWriters& operator=(const FileWriters&) = delete;
 
     // To be written, each whole. Fails once one could not be.
     [[nodiscard]] cli::Result<void> push(ArrivedFile file);
@@ -56,7 +58,6 @@ class FileWriters {
     std::condition_variable changed_;
     std::deque<ArrivedFile> waiting_;  // guarded by mutex_, and so is the rest
     bool ended_ = false;
-    std::size_t skipped_ = 0;
     cli::Result<void> result_;
     Progress progress_;
     std::vector<v1::SectorCoordinate> written_;

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -58,9 +59,15 @@ cli::Result<void> FolderPull::pull() {
 }
 
 cli::Result<void> FolderPull::pull_new() {
-    look_at_folder();
-    FileWriters writers(folder_, job_.sectors_total());
-    auto pulled = pull_pages(writers);
+    const auto missing = missing_files();
+    if (!missing)
+        return tl::unexpected(missing.error());
+    if (missing->empty())
+        return {};
+    if (auto begun = begin(); !begun)
+        return begun;
+    FileWriters writers(folder_, static_cast<std::int64_t>(missing->size()));
+    auto pulled = stream(*missing, writers);
     auto written = writers.finish();
     for (const v1::SectorCoordinate& coordinate : writers.written()) {
         here_.insert(place_of(coordinate));
@@ -85,31 +92,31 @@ bool FolderPull::all_are_there() {
     return gone == 0;
 }
 
-// The server looks up the next page meanwhile, and no request grows with the map.
-cli::Result<void> FolderPull::pull_pages(FileWriters& writers) {
+cli::Result<std::vector<v1::SectorCoordinate>> FolderPull::missing_files() {
+    look_at_folder();
     manifest_.unfinished = 0;
+    std::vector<v1::SectorCoordinate> missing;
+    auto listed = for_each_sector(connection_, job_.name(), [&](const v1::Sector& sector) {
+        if (is_missing(sector))
+            missing.push_back(sector.coordinate());
+    });
+    if (!listed)
+        return tl::unexpected(listed.error());
+    return missing;
+}
+
+// In parts, so that no request grows with the map.
+cli::Result<void> FolderPull::stream(std::span<const v1::SectorCoordinate> missing, FileWriters& writers) {
+    constexpr std::size_t part = 2'000;
     std::optional<LostFiles> lost;
     int lost_later = 0;
-    SectorPages pages(connection_, job_.name());
-    for (;;) {
-        const auto page = pages.next();
-        if (!page)
-            return tl::unexpected(page.error());
-        if (!*page)
-            break;
+    while (!missing.empty()) {
         v1::PullSectorsRequest wanted;
         wanted.set_job(job_.name());
         wanted.set_takes_packs(true);
-        for (const v1::Sector& sector : (*page)->sectors()) {
-            if (is_missing(sector))
-                *wanted.add_sectors() = sector.coordinate();
-            else if (sector.state() == v1::Sector::DONE)
-                writers.skip();
-        }
-        if (wanted.sectors().empty())
-            continue;
-        if (auto begun = begin(); !begun)
-            return begun;
+        const auto now = missing.first(std::min(part, missing.size()));
+        wanted.mutable_sectors()->Assign(now.begin(), now.end());
+        missing = missing.subspan(now.size());
         const auto lost_here = stream_sectors(connection_, wanted, writers);
         if (!lost_here)
             return tl::unexpected(lost_here.error());

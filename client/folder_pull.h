@@ -10,9 +10,11 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 namespace drtv::client {
 
@@ -48,7 +50,10 @@ class FolderPull {
     void look_at_folder();
     // Whether nobody has removed one of the job's files.
     [[nodiscard]] bool all_are_there();
-    [[nodiscard]] cli::Result<void> pull_pages(FileWriters& writers);
+    // Sectors that are done, of which the folder has no right file.
+    [[nodiscard]] cli::Result<std::vector<v1::SectorCoordinate>> missing_files();
+    [[nodiscard]] cli::Result<void> stream(std::span<const v1::SectorCoordinate> missing,
+                                           FileWriters& writers);
     // Whether the sector is done, and the folder has no right file of it.
     [[nodiscard]] bool is_missing(const v1::Sector& sector);
     [[nodiscard]] bool has_file(const folder::SectorPlace& place, const folder::ListedFile& listed) const;

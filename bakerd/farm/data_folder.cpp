@@ -1,5 +1,7 @@
 #include "bakerd/farm/data_folder.h"
 
+#include "bakerd/store/owner.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/magic.h>
@@ -11,7 +13,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <random>
 
 namespace drtv::farm {
@@ -84,18 +85,13 @@ store::Result<std::unique_ptr<DataFolder>> DataFolder::lock(const std::string& p
 
 store::Result<std::string> DataFolder::id() const {
     const std::string path = path_ + "/id";
-    std::string known;
-    std::getline(std::ifstream(path), known);
-    if (!known.empty())
+    auto known = store::read_mark(path);
+    if (!known || !known->empty())
         return known;
     std::random_device random;
-    const std::string made = fmt::format("{:08x}{:08x}", random(), random());
-    std::ofstream file(path);
-    file << made << "\n";
-    file.close();
-    if (!file)
-        return store::fail(store::ErrorCode::internal,
-                           fmt::format("cannot write to the data folder {}", path_));
+    std::string made = fmt::format("{:08x}{:08x}", random(), random());
+    if (auto written = store::write_mark(path, made); !written)
+        return tl::unexpected(written.error());
     return made;
 }
 

@@ -29,8 +29,15 @@ Result<std::unique_ptr<store::BlobStore>> open_store(const Farm::Options& option
     const auto id = folder.id();
     if (!id)
         return tl::unexpected(id.error());
-    if (auto claimed = store::claim_folder(options.store_folder, *id); !claimed)
+    const std::string mark = folder.path() + "/store";
+    const auto known = store::read_mark(mark);
+    if (!known)
+        return tl::unexpected(known.error());
+    const bool is_known = *known == options.store_folder;
+    if (auto claimed = store::claim_folder(options.store_folder, *id, is_known); !claimed)
         return tl::unexpected(claimed.error());
+    if (auto marked = is_known ? Result<void>() : store::write_mark(mark, options.store_folder); !marked)
+        return tl::unexpected(marked.error());
     return store::BlobStore::open(options.store_folder + "/blobs");
 }
 

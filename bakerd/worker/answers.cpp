@@ -1,6 +1,7 @@
 #include "bakerd/worker/answers.h"
 
 #include "bakerd/store/durable_file.h"
+#include "bakerd/worker/build_id.h"
 #include "bakerd/worker/protocol.h"
 
 #include <fmt/format.h>
@@ -28,7 +29,12 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 Digest answer_key(const BakeRequest& request) {
     BakeRequest alone = request;
     alone.earlier.reset();
-    return map::digest_of(bytes_of(encode(Request{0, std::move(alone)})));
+    const BuildId build = this_build();
+    return map::digest_of(bytes_of(fmt::format("{} {} {} {}",
+                                               build.baker_version,
+                                               build.commit,
+                                               build.isa_class,
+                                               encode(Request{0, std::move(alone)}))));
 }
 
 store::Result<Answers> Answers::open(const std::string& store_folder) {

@@ -13,7 +13,7 @@
 
 namespace drtv::worker {
 
-// The same for all requests that have the same answer: an earlier result only saves work.
+// The same for all requests that have the same answer from this build: an earlier result only saves work.
 [[nodiscard]] Digest answer_key(const BakeRequest& request);
 
 struct TaskAnswer {

@@ -29,28 +29,22 @@ class BatchRun {
     void bake(const BakeRequest& request) {
         const Digest key = answer_key(request);
         // Another copy of the task may have been here.
-        if (!answers_.among({key}).empty())
+        if (!answers_.among({key}).empty() && answers_.read(key))
             return;
-        TaskAnswer answer;
-        answer.node = options_.node;
-        answer.log = options_.log;
         const auto what = worker_.answer({0, request}).what;
         if (const auto* result = std::get_if<SectorResult>(&what)) {
-            answer.what = *result;
             tell(request.sector, *result);
+            write(request.sector, key, *result);
         } else if (const auto* failure = std::get_if<RequestFailure>(&what)) {
-            answer.what = *failure;
-            spdlog::error("sector ({}, {}): {}", request.sector.i, request.sector.j, failure->sentence);
-        }
-        answer.peak_memory_bytes = peak_memory_bytes();
-        if (auto written = answers_.write(key, answer); !written) {
-            spdlog::error("sector ({}, {}): {}", request.sector.i, request.sector.j, written.error().message);
-            const std::lock_guard lock(mutex_);
-            failure_ = written.error().message;
+            // One that may pass is no answer: another task may have a better one.
+            if (failure->may_retry)
+                note(request.sector, failure->sentence);
+            else
+                write(request.sector, key, *failure);
         }
     }
 
-    // Of the last answer that could not be written; else empty.
+    // Why the last of the sectors without an answer has none; else empty.
     [[nodiscard]] const std::string& failure() const { return failure_; }
 
   private:
@@ -59,6 +53,18 @@ class BatchRun {
             "sector ({}, {}): {} probes in {:.1f} s", sector.i, sector.j, result.probes, result.seconds);
         for (const std::string& warning : result.warnings)
             spdlog::warn("sector ({}, {}): {}", sector.i, sector.j, warning);
+    }
+
+    void write(const map::SectorCoordinate& sector, const Digest& key, decltype(TaskAnswer::what) what) {
+        const TaskAnswer answer{std::move(what), options_.node, options_.log, peak_memory_bytes()};
+        if (auto written = answers_.write(key, answer); !written)
+            note(sector, written.error().message);
+    }
+
+    void note(const map::SectorCoordinate& sector, const std::string& sentence) {
+        spdlog::error("sector ({}, {}): {}", sector.i, sector.j, sentence);
+        const std::lock_guard lock(mutex_);
+        failure_ = sentence;
     }
 
     const BatchOptions& options_;

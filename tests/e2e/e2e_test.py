@@ -7,6 +7,7 @@ import hashlib
 import json
 import os
 import pty
+import shutil
 import signal
 import sqlite3
 import struct
@@ -924,6 +925,10 @@ class Pull(FarmTest):
             status=UNREADABLE,
         )
         self.assertTrue(read_folder(self.farm.path("rest")) == everything)
+        # What it began lists them all, so that a later pull knows them as ours.
+        with open(self.farm.path("rest/sectors.json"), encoding="utf-8") as file:
+            begun = json.load(file)
+        self.assertEqual((begun["pulling"], len(begun["sectors"])), (True, 2116))
 
     def two_islands(self, name="map.gltf"):
         moved = [(x + 128, y, z) for x, y, z in LAWN]
@@ -1094,12 +1099,15 @@ class Pull(FarmTest):
 
     def test_a_pull_that_fails_leaves_no_folder_of_its_own(self):
         daemon = self.farm.daemon()
-        made, known = self.farm.path("made"), self.farm.path("known")
+        made, known, link = self.farm.path("made"), self.farm.path("known"), self.farm.path("link")
         os.mkdir(known)
+        os.symlink(self.farm.path("away/folder"), link)
         for folder in (made, known):
             done = self.farm.bake(daemon, "pull", "7", "--out", folder)
             self.assert_sentence(done, "there is no job 7", status=USAGE)
         self.assertEqual((os.path.exists(made), os.path.exists(known)), (False, True))
+        self.assertNotEqual(self.farm.bake(daemon, "pull", "7", "--out", link).returncode, 0)
+        self.assertTrue(os.path.islink(link))
 
     def test_a_pull_that_cannot_write_ends(self):
         daemon = self.farm.daemon()
@@ -1466,6 +1474,12 @@ class Store(FarmTest):
         daemon.start()
         done = self.farm.bake(daemon, "pull", "1", "--out", self.farm.path("again"))
         self.assertEqual(done.returncode, 0, done.stderr)
+        daemon.stop()
+        os.rename(store, store + "_away")
+        refused = self.farm.run("bakerd", "serve", "--data", data, "--store", store)
+        self.assert_sentence(refused, "is it mounted?", store, status=UNREADABLE)
+        shutil.rmtree(store)
+        os.rename(store + "_away", store)
         refused = self.farm.run("bakerd", "serve", "--data", self.farm.path("other"), "--store", store)
         self.assert_sentence(refused, "belongs to another daemon's data folder", store, status=UNREADABLE)
 

@@ -7,6 +7,7 @@
 #include "tests/map/gltf_builder.h"
 #include "tests/store/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -104,13 +105,29 @@ TEST_F(BatchTest, WhatHasAnAnswerIsLeftAlone) {
     EXPECT_EQ(answers.read(answer_key(request(sectors[0], manifest)))->node, "node7");
 }
 
-TEST_F(BatchTest, AMapThatIsNotThereIsAnAnswer) {
-    const BakeRequest lost = request({0, 0}, map::digest_of(bytes_of("nothing")));
+TEST_F(BatchTest, AMapThatCannotBeImportedIsAnAnswer) {
+    auto blobs = std::move(*store::BlobStore::open(folder.path() + "/blobs"));
+    const Digest file = blobs->put(bytes_of("no map")).value();
+    const std::string broken = store::encode_manifest({{{"a.gltf", file, 6}}, {"a.gltf"}});
+    const BakeRequest lost = request({0, 0}, blobs->put(bytes_of(broken)).value());
     write_array(options.array, {this_build(), {{lost}}});
     ASSERT_TRUE(run_batch(options));
     const auto answer = answers.read(answer_key(lost));
     ASSERT_TRUE(answer);
     EXPECT_FALSE(std::get<RequestFailure>(answer->what).sentence.empty());
+}
+
+TEST_F(BatchTest, AFailureThatMayPassIsNoAnswer) {
+    // Files stand where most folders of blobs would.
+    for (int n = 0; n < 256; ++n) {
+        const std::string path = fmt::format("{}/blobs/objects/{:02x}", folder.path(), n);
+        if (!fs::exists(path))
+            test::write_file(path, "");
+    }
+    const auto ran = run_batch(options);
+    ASSERT_FALSE(ran);
+    EXPECT_NE(ran.error().find("blobs/objects"), std::string::npos) << ran.error();
+    EXPECT_TRUE(answers.among(keys()).empty());
 }
 
 TEST_F(BatchTest, AnotherBuildOrMachineIsRefusedInASentence) {
