@@ -60,12 +60,10 @@ cli::Result<cli::ExitCode> serve(const ServeOptions& options) {
                             ? options.threads
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-    const std::string blobs = (options.store.empty() ? options.data : options.store) + "/blobs";
-    auto farm = farm::Farm::open({options.data,
-                                  {self, "worker", "--blobs", blobs, "--threads", std::to_string(threads)},
-                                  threads,
-                                  options.cache_bytes,
-                                  options.store});
+    farm::Farm::Options farm_options{options.data, {}, threads, options.cache_bytes, options.store};
+    farm_options.worker_command = {
+        self, "worker", "--blobs", farm_options.blob_folder(), "--threads", std::to_string(threads)};
+    auto farm = farm::Farm::open(std::move(farm_options));
     if (!farm)
         return cli::fail(cli::exit_unreadable, farm.error().message);
     auto server = service::Server::start(

@@ -5,7 +5,6 @@
 #include "format/folder/whole_file.h"
 
 #include <grpcpp/grpcpp.h>
-
 #include <unistd.h>
 
 #include <filesystem>
@@ -13,7 +12,6 @@
 #include <utility>
 
 namespace drtv::client {
-
 namespace {
 
 cli::Result<cli::ExitCode> pull_into(ServerConnection& connection,

@@ -25,7 +25,7 @@ namespace {
 // A store serves one daemon: what another one evicts would be missed.
 Result<std::unique_ptr<store::BlobStore>> open_store(const Farm::Options& options, const DataFolder& folder) {
     if (options.store_folder.empty())
-        return store::BlobStore::open(folder.path() + "/blobs");
+        return store::BlobStore::open(options.blob_folder());
     const auto id = folder.id();
     if (!id)
         return tl::unexpected(id.error());
@@ -38,7 +38,7 @@ Result<std::unique_ptr<store::BlobStore>> open_store(const Farm::Options& option
         return tl::unexpected(claimed.error());
     if (auto marked = is_known ? Result<void>() : store::write_mark(mark, options.store_folder); !marked)
         return tl::unexpected(marked.error());
-    return store::BlobStore::open(options.store_folder + "/blobs");
+    return store::BlobStore::open(options.blob_folder());
 }
 
 }  // namespace

@@ -48,6 +48,10 @@ class Farm {
         std::int64_t cache_bytes = std::int64_t{20}
                                    << 30;  // of results; above, the least recently used are evicted
         std::string store_folder{};        // of blobs; empty: within the data folder
+
+        [[nodiscard]] std::string blob_folder() const {
+            return (store_folder.empty() ? data_folder : store_folder) + "/blobs";
+        }
     };
     // Resumes the state that an earlier run left in the folder.
     [[nodiscard]] static store::Result<std::unique_ptr<Farm>> open(Options options);

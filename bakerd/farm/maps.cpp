@@ -2,6 +2,7 @@
 
 #include "bakerd/farm/database.h"
 #include "bakerd/farm/map_table.h"
+#include "bakerd/store/text_bytes.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +18,7 @@ store::Result<MapView> Maps::create(store::Manifest given) {
                                fmt::format("the file '{}' has not been uploaded", file.path));
     }
     const std::string bytes = store::encode_manifest(*manifest);
-    const auto id = blobs_.put({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    const auto id = blobs_.put(store::bytes_of_text(bytes));
     if (!id)
         return tl::unexpected(id.error());
     const auto summary = known_or_inspected(*id);

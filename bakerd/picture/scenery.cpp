@@ -51,12 +51,14 @@ cli::Result<std::shared_ptr<const map::Map>> read_map(std::span<const std::strin
 }
 
 cli::Result<void> check_manifest(const std::string& folder, const map::Map& map) {
-    folder::warn_of_pull(folder);
     const auto manifest = folder::read_manifest(folder);
     if (!manifest)
         return tl::unexpected(manifest.error());
+    if (!*manifest)
+        return {};
+    folder::warn_of_pull(folder, **manifest);
     const std::string content = to_hex(map.content);
-    if (!*manifest || (*manifest)->map == content)
+    if ((*manifest)->map == content)
         return {};
     return cli::fail(
         cli::exit_invalid,

@@ -1,5 +1,6 @@
 #include "bakerd/service/names.h"
 #include "bakerd/service/services.h"
+#include "bakerd/store/text_bytes.h"
 #include "map_files/limits.h"
 
 #include <fmt/format.h>
@@ -15,10 +16,6 @@ store::Result<map::Digest> checked(const v1::Blob& blob) {
                            fmt::format("a blob of {} bytes is over the limit of 2 GiB", blob.size_bytes()));
     }
     return digest_from_text(blob.sha256());
-}
-
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 }  // namespace
@@ -70,7 +67,7 @@ grpc::Status BlobsService::UploadBlob(grpc::ServerContext*,
             return failed(
                 grpc::StatusCode::INVALID_ARGUMENT,
                 fmt::format("a message of {} data bytes, the limit is 1 MiB", request.data().size()));
-        if (auto appended = upload->append(bytes_of(request.data())); !appended)
+        if (auto appended = upload->append(store::bytes_of_text(request.data())); !appended)
             return to_status(appended.error());
     } while (reader->Read(&request));
     if (auto finished = upload->finish(); !finished)

@@ -1,6 +1,7 @@
 #include "bakerd/store/owner.h"
 
 #include "bakerd/store/durable_file.h"
+#include "bakerd/store/text_bytes.h"
 
 #include <fmt/format.h>
 
@@ -22,9 +23,7 @@ Result<std::string> read_mark(const std::string& path) {
 
 Result<void> write_mark(const std::string& path, const std::string& text) {
     const std::string line = text + "\n";
-    return write_durably(path.substr(0, path.rfind('/')),
-                         path,
-                         {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
+    return write_durably(path.substr(0, path.rfind('/')), path, bytes_of_text(line));
 }
 
 Result<void> claim_folder(const std::string& folder, const std::string& owner, bool is_known) {

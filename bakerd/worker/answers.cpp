@@ -1,6 +1,7 @@
 #include "bakerd/worker/answers.h"
 
 #include "bakerd/store/durable_file.h"
+#include "bakerd/store/text_bytes.h"
 #include "bakerd/worker/build_id.h"
 #include "bakerd/worker/protocol.h"
 
@@ -9,32 +10,24 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
-#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 namespace drtv::worker {
-namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-}  // namespace
 
 Digest answer_key(const BakeRequest& request) {
     BakeRequest alone = request;
     alone.earlier.reset();
     const BuildId build = this_build();
-    return map::digest_of(bytes_of(fmt::format("{} {} {} {}",
-                                               build.baker_version,
-                                               build.commit,
-                                               build.isa_class,
-                                               encode(Request{0, std::move(alone)}))));
+    return map::digest_of(store::bytes_of_text(fmt::format("{} {} {} {}",
+                                                           build.baker_version,
+                                                           build.commit,
+                                                           build.isa_class,
+                                                           encode(Request{0, std::move(alone)}))));
 }
 
 store::Result<Answers> Answers::open(const std::string& store_folder) {
@@ -66,7 +59,7 @@ store::Result<void> Answers::write(const Digest& key, const TaskAnswer& answer) 
     const Json task = {
         {"node", answer.node}, {"log", answer.log}, {"peak_memory_bytes", answer.peak_memory_bytes}};
     const std::string text = line + "\n" + task.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-    return store::write_durably(folder_ + "/tmp", path_of(key), bytes_of(text));
+    return store::write_durably(folder_ + "/tmp", path_of(key), store::bytes_of_text(text));
 }
 
 std::set<Digest> Answers::among(const std::set<Digest>& keys) const {

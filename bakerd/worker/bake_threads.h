@@ -19,8 +19,6 @@ class BakeThreads {
           limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count_) + 1),
           arena_(count_, 0) {}
 
-    [[nodiscard]] int count() const { return count_; }
-
     template <class Work>
     void enqueue(Work work) {
         arena_.enqueue(in_flight_.defer(std::move(work)));

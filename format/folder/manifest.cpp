@@ -90,10 +90,14 @@ cli::Result<std::optional<FolderManifest>> read_manifest(const std::string& fold
     }
 }
 
-void warn_of_pull(const std::string& folder) {
-    const auto manifest = read_manifest(folder);
-    if (manifest && *manifest && (*manifest)->pulling)
+void warn_of_pull(const std::string& folder, const FolderManifest& manifest) {
+    if (manifest.pulling)
         cli::warn("a pull into " + folder + " has begun, and not come to its end: files may be missing");
+}
+
+void warn_of_pull(const std::string& folder) {
+    if (const auto manifest = read_manifest(folder); manifest && *manifest)
+        warn_of_pull(folder, **manifest);
 }
 
 bool are_of_one_map(const FolderManifest& one, const FolderManifest& other) {

@@ -50,8 +50,9 @@ struct FolderManifest {
 // Nothing where the folder has none. Fails for one that cannot be read, or is none.
 [[nodiscard]] cli::Result<std::optional<FolderManifest>> read_manifest(const std::string& folder);
 
-// Warns where the manifest says that a pull is under way, or was cut off. Another fault of it is left to
-// `drtv validate`.
+// Warns where the manifest says that a pull is under way, or was cut off.
+void warn_of_pull(const std::string& folder, const FolderManifest& manifest);
+// Of the folder's own. Another fault of it is left to `drtv validate`.
 void warn_of_pull(const std::string& folder);
 
 // Whether both are of versions of one map: they name a document of the same name, or share objects.

@@ -114,7 +114,9 @@ cli::Result<cli::ExitCode> print_folder_info(const std::string& folder) {
     const auto files = kit::sector_files(folder);
     if (!files)
         return tl::unexpected(files.error());
-    folder::warn_of_pull(folder);
+    const auto manifest = folder::read_manifest(folder);
+    if (manifest && *manifest)
+        folder::warn_of_pull(folder, **manifest);
     Sums sums;
     for (const std::string& file : *files) {
         kit::FileBytes bytes;
@@ -124,7 +126,6 @@ cli::Result<cli::ExitCode> print_folder_info(const std::string& folder) {
         sums.add(*sector, bytes);
     }
     print(sums);
-    const auto manifest = folder::read_manifest(folder);
     if (!manifest)
         return tl::unexpected(manifest.error());
     if (*manifest)

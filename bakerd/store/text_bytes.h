@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace drtv::store {
+
+// The bytes of a text, as the store takes them. REQUIRES: the text outlives them.
+[[nodiscard]] inline std::span<const std::uint8_t> bytes_of_text(std::string_view text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace drtv::store
