@@ -9,13 +9,29 @@
 #include <functional>
 #include <future>
 #include <optional>
+#include <string>
 
 namespace drtv::executor {
+
+// Interactive sectors go before nightly ones. Persisted: a number never changes its meaning.
+enum class Priority : std::uint8_t { nightly = 0, interactive = 1 };
 
 // A sector to bake; `id` is the caller's.
 struct SectorTask {
     std::uint64_t id = 0;
     worker::BakeRequest request;
+    Priority priority = Priority::interactive;
+    double seconds = 0;  // of one thread, that baking it will take, as far as is known; 0: not
+};
+
+// What has come of it.
+struct SectorEnd {
+    std::uint64_t id = 0;
+    int failed_attempts = 0;
+    Reply<worker::SectorResult> reply;
+    // Of the task on a cluster that baked it, or failed last; empty on this machine.
+    std::string node{};
+    std::string log{};  // file with what it printed, within the store
 };
 
 // A request is tried this often; two retries after the first failure.
@@ -25,14 +41,17 @@ class Executor {
   public:
     // Called from a thread of the executor's own, never under its lock.
     struct Callbacks {
-        std::function<std::optional<SectorTask>()> next;
-        std::function<void(std::uint64_t id, int failed_attempts, Reply<worker::SectorResult> reply)>
-            finished;
+        // Of this priority.
+        std::function<std::optional<SectorTask>(Priority lowest)> next;
+        std::function<void(SectorEnd end)> finished;
+        // True where nobody wants the sector any more: it is not heard of again.
+        std::function<bool(std::uint64_t id)> give_up;
     };
 
     virtual ~Executor() = default;
 
-    // There may be a sector to bake behind `next`, which the executor asks whenever it has room.
+    // There may be a sector to bake behind `next`, which the executor asks whenever it has room; or fewer are
+    // wanted than before.
     virtual void wake() = 0;
 
     // Answered before any waiting sector, on this machine.

@@ -165,7 +165,7 @@ void LocalExecutor::finish(Work& work, Outcome outcome) {
         work.answer(std::move(outcome));
     else
         callbacks_.finished(
-            *work.sector, work.failed_attempts, reply_of<worker::SectorResult>(std::move(outcome)));
+            {*work.sector, work.failed_attempts, reply_of<worker::SectorResult>(std::move(outcome))});
 }
 
 std::optional<LocalExecutor::Work> LocalExecutor::next_work() {
@@ -187,7 +187,9 @@ std::optional<LocalExecutor::Work> LocalExecutor::next_work() {
         again_.pop_front();
         return work;
     }
-    std::optional<SectorTask> task = callbacks_.next();
+    std::optional<SectorTask> task = callbacks_.next(Priority::interactive);
+    if (!task)
+        task = callbacks_.next(Priority::nightly);
     if (!task)
         return std::nullopt;
     Work work;

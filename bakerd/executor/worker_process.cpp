@@ -1,75 +1,29 @@
 #include "bakerd/executor/worker_process.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <spawn.h>
+#include "bakerd/executor/spawn.h"
+
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
-#include <optional>
-
-extern char** environ;
 
 namespace drtv::executor {
-namespace {
-
-std::string describe_exit(int status) {
-    if (WIFSIGNALED(status))
-        return fmt::format("was ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
-    return fmt::format("ended with status {}", WEXITSTATUS(status));
-}
-
-struct Pipe {
-    store::FileDescriptor read;
-    store::FileDescriptor write;
-};
-
-std::optional<Pipe> make_pipe() {
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-        return std::nullopt;
-    return Pipe{store::FileDescriptor(ends[0]), store::FileDescriptor(ends[1])};
-}
-
-}  // namespace
 
 store::Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::vector<std::string>& command,
                                                                    Events events) {
-    std::optional<Pipe> to_worker = make_pipe();
-    std::optional<Pipe> from_worker = to_worker ? make_pipe() : std::nullopt;
+    auto to_worker = make_pipe();
+    if (!to_worker)
+        return tl::unexpected(to_worker.error());
+    auto from_worker = make_pipe();
     if (!from_worker)
-        return store::fail(store::ErrorCode::internal,
-                           fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, to_worker->read.get(), STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, from_worker->write.get(), STDOUT_FILENO);
-    // A group of its own: ctrl-C in the daemon's terminal is the daemon's to handle.
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    // The daemon blocks the signals it waits for; the worker must not.
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
-    std::vector<char*> arguments;
-    for (const std::string& argument : command)
-        arguments.push_back(const_cast<char*>(argument.c_str()));
-    arguments.push_back(nullptr);
-    pid_t pid = 0;
-    const int error = ::posix_spawn(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-    if (error != 0)
-        return store::fail(store::ErrorCode::internal,
-                           fmt::format("cannot start the worker {}: {}", command[0], std::strerror(error)));
-    return std::unique_ptr<WorkerProcess>(
-        new WorkerProcess(pid, std::move(to_worker->write), std::move(from_worker->read), std::move(events)));
+        return tl::unexpected(from_worker.error());
+    const auto pid = spawn(command, {to_worker->read.get(), from_worker->write.get()});
+    if (!pid)
+        return tl::unexpected(pid.error());
+    return std::unique_ptr<WorkerProcess>(new WorkerProcess(
+        *pid, std::move(to_worker->write), std::move(from_worker->read), std::move(events)));
 }
 
 WorkerProcess::WorkerProcess(pid_t pid,

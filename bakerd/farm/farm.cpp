@@ -1,15 +1,14 @@
 #include "bakerd/farm/farm.h"
 
-#include "bakerd/executor/local_executor.h"
 #include "bakerd/farm/clock.h"
 #include "bakerd/farm/database.h"
 #include "bakerd/farm/job_store.h"
 #include "bakerd/farm/job_table.h"
 #include "bakerd/farm/maps.h"
+#include "bakerd/farm/open_store.h"
 #include "bakerd/farm/planner.h"
 #include "bakerd/farm/recorder.h"
 #include "bakerd/farm/result_cache.h"
-#include "bakerd/store/owner.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -20,29 +19,6 @@ using store::ErrorCode;
 using store::fail;
 using store::Result;
 
-namespace {
-
-// A store serves one daemon: what another one evicts would be missed.
-Result<std::unique_ptr<store::BlobStore>> open_store(const Farm::Options& options, const DataFolder& folder) {
-    if (options.store_folder.empty())
-        return store::BlobStore::open(options.blob_folder());
-    const auto id = folder.id();
-    if (!id)
-        return tl::unexpected(id.error());
-    const std::string mark = folder.path() + "/store";
-    const auto known = store::read_mark(mark);
-    if (!known)
-        return tl::unexpected(known.error());
-    const bool is_known = *known == options.store_folder;
-    if (auto claimed = store::claim_folder(options.store_folder, *id, is_known); !claimed)
-        return tl::unexpected(claimed.error());
-    if (auto marked = is_known ? Result<void>() : store::write_mark(mark, options.store_folder); !marked)
-        return tl::unexpected(marked.error());
-    return store::BlobStore::open(options.blob_folder());
-}
-
-}  // namespace
-
 Farm::Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<store::BlobStore> blobs)
     : options_(std::move(options)), folder_(std::move(folder)), blobs_(std::move(blobs)) {}
 
@@ -50,14 +26,15 @@ Result<std::unique_ptr<Farm>> Farm::open(Options options) {
     auto folder = DataFolder::lock(options.data_folder);
     if (!folder)
         return tl::unexpected(folder.error());
-    auto blobs = open_store(options, **folder);
+    auto blobs = open_store(options.store_folder, options.blob_folder(), **folder);
     if (!blobs)
         return tl::unexpected(blobs.error());
     (*blobs)->remove_leftovers();
     std::unique_ptr<Farm> farm(new Farm(std::move(options), std::move(*folder), std::move(*blobs)));
     if (auto loaded = farm->load(); !loaded)
         return tl::unexpected(loaded.error());
-    farm->start();
+    if (auto started = farm->start(); !started)
+        return tl::unexpected(started.error());
     return farm;
 }
 
@@ -72,22 +49,27 @@ Result<void> Farm::load() {
     return load_jobs(*database_, book_);
 }
 
-void Farm::start() {
+Result<void> Farm::start() {
+    const auto owner = folder_->id();
+    if (!owner)
+        return tl::unexpected(owner.error());
     recorder_ = std::make_unique<Recorder>(*database_, *cache_, book_, [this] { executor_->wake(); });
     executor::Executor::Callbacks callbacks;
-    callbacks.next = [this] { return book_.next(); };
-    callbacks.finished =
-        [this](std::uint64_t id, int failed_attempts, executor::Reply<worker::SectorResult> reply) {
-            if (auto finished = book_.finish(id, failed_attempts, std::move(reply)))
-                recorder_->record(std::move(*finished));
-        };
-    executor_ = std::make_unique<executor::LocalExecutor>(
-        executor::LocalExecutor::Options{.worker_command = options_.worker_command,
-                                         .threads = options_.threads},
-        std::move(callbacks));
+    callbacks.next = [this](executor::Priority priority) { return book_.next(priority); };
+    callbacks.finished = [this](executor::SectorEnd end) {
+        if (auto finished = book_.finish(std::move(end)))
+            recorder_->record(std::move(*finished));
+    };
+    callbacks.give_up = [this](std::uint64_t id) { return book_.give_up(id); };
+    auto executor =
+        open_executor(options_.executor, options_.store_folder, *owner, *blobs_, std::move(callbacks));
+    if (!executor)
+        return tl::unexpected(executor.error());
+    executor_ = std::move(*executor);
     maps_ = std::make_unique<Maps>(*database_, *blobs_, *executor_);
     planner_ = std::make_unique<Planner>(*maps_, *cache_, *blobs_, *executor_);
     executor_->wake();
+    return {};
 }
 
 Farm::~Farm() {
@@ -114,7 +96,7 @@ Result<PlanView> Farm::plan_job(const JobRequest& request) {
     auto planned = planner_->plan(request, pin);
     if (!planned)
         return tl::unexpected(planned.error());
-    const double seconds = seconds_to_bake(planned->plan, options_.threads);
+    const double seconds = seconds_to_bake(planned->plan, options_.executor.threads);
     return PlanView{std::move(planned->plan), seconds};
 }
 
@@ -146,7 +128,7 @@ Result<JobView> Farm::create_planned(const JobRequest& request, const std::funct
     book_.add(std::move(job),
               wanted_by(planned->plan),
               planned->plan.warnings,
-              seconds_to_bake(planned->plan, options_.threads));
+              seconds_to_bake(planned->plan, options_.executor.threads));
     // Its client cannot know of it. Should it ask again, it gets another.
     if (is_left())
         return cancel_job(id, true);
@@ -204,6 +186,7 @@ Result<JobView> Farm::cancel_job(std::int64_t id, bool forget_request) {
     if (cancelled) {
         book_.update(*cancelled);
         cache_->job_ended();
+        executor_->wake();
         spdlog::info("job {} was cancelled", id);
     }
     return get_job(id);

@@ -6,6 +6,7 @@
 #include "bakerd/farm/data_folder.h"
 #include "bakerd/farm/job_book.h"
 #include "bakerd/farm/job_request.h"
+#include "bakerd/farm/open_executor.h"
 #include "bakerd/farm/plan.h"
 #include "bakerd/farm/records.h"
 #include "bakerd/farm/sector_views.h"
@@ -43,8 +44,7 @@ class Farm {
   public:
     struct Options {
         std::string data_folder;
-        std::vector<std::string> worker_command;
-        int threads = 1;
+        ExecutorOptions executor;
         std::int64_t cache_bytes = std::int64_t{20}
                                    << 30;  // of results; above, the least recently used are evicted
         std::string store_folder{};        // of blobs; empty: within the data folder
@@ -99,7 +99,7 @@ class Farm {
   private:
     Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<store::BlobStore> blobs);
     [[nodiscard]] store::Result<void> load();
-    void start();
+    [[nodiscard]] store::Result<void> start();
 
     [[nodiscard]] store::Result<JobView> create_planned(const JobRequest& request,
                                                         const std::function<bool()>& is_left);

@@ -39,7 +39,12 @@ void JobBook::want(Job& job, std::span<const WantedSector> wanted, Join join) {
     for (const WantedSector& sector : wanted) {
         key.sector = sector.sector;
         const std::uint64_t id = task_for(job, sector, key, join);
-        tasks_.at(id).jobs.insert(job.row.id);
+        Task& task = tasks_.at(id);
+        task.jobs.insert(job.row.id);
+        if (job.row.priority > task.priority) {
+            task.priority = job.row.priority;
+            put_in_queue(id, task);
+        }
         job.tasks[sector.sector] = id;
     }
 }
@@ -56,13 +61,21 @@ std::uint64_t JobBook::task_for(const Job& job, const WantedSector& wanted, Bake
     Task& task = tasks_[id];
     task.key = key;
     task.request = {job.row.manifest, wanted.sector, job.row.settings, {}};
+    task.seconds = wanted.seconds;
+    task.priority = job.row.priority;
     if (wanted.earlier) {
         task.request.earlier = wanted.earlier->result.blobs;
         task.earlier_seconds = wanted.earlier->result.seconds;
     }
     tasks_by_key_[key] = id;
-    queue_.push_back(id);
+    put_in_queue(id, task);
     return id;
+}
+
+// It may lie in the queue of a lower priority, too.
+void JobBook::put_in_queue(std::uint64_t id, const Task& task) {
+    if (!task.running)
+        queues_[static_cast<std::size_t>(task.priority)].push_back(id);
 }
 
 std::optional<std::int64_t> JobBook::begin_request(const std::string& request_id) {
@@ -84,14 +97,16 @@ void JobBook::end_request(const std::string& request_id) {
     changed_.notify_all();
 }
 
-std::optional<executor::SectorTask> JobBook::next() {
+std::optional<executor::SectorTask> JobBook::next(executor::Priority priority) {
     const std::lock_guard lock(mutex_);
-    while (!queue_.empty()) {
-        const std::uint64_t id = queue_.front();
-        queue_.pop_front();
+    std::deque<std::uint64_t>& queue = queues_[static_cast<std::size_t>(priority)];
+    while (!queue.empty()) {
+        const std::uint64_t id = queue.front();
+        queue.pop_front();
         const auto found = tasks_.find(id);
-        if (found == tasks_.end())
-            continue;  // its jobs were cancelled
+        // Its jobs were cancelled, or it went to another queue.
+        if (found == tasks_.end() || found->second.running || found->second.priority != priority)
+            continue;
         Task& task = found->second;
         task.running = true;
         for (const std::int64_t job_id : task.jobs) {
@@ -101,24 +116,32 @@ std::optional<executor::SectorTask> JobBook::next() {
             job.started = Clock::now();
             changed(job);
         }
-        return executor::SectorTask{id, task.request};
+        return executor::SectorTask{id, task.request, task.priority, task.seconds};
     }
     return std::nullopt;
 }
 
-std::optional<FinishedSector> JobBook::finish(std::uint64_t id,
-                                              int failed_attempts,
-                                              executor::Reply<worker::SectorResult> reply) {
+bool JobBook::give_up(std::uint64_t id) {
     const std::lock_guard lock(mutex_);
     const auto found = tasks_.find(id);
+    if (found == tasks_.end())
+        return true;
+    if (!found->second.jobs.empty())
+        return false;
+    forget(id);
+    return true;
+}
+
+std::optional<FinishedSector> JobBook::finish(executor::SectorEnd end) {
+    const std::lock_guard lock(mutex_);
+    const auto found = tasks_.find(end.id);
     if (found == tasks_.end())
         return std::nullopt;
     Task& task = found->second;
     // What it takes from nothing is known of the earlier result.
-    if (reply && task.earlier_seconds > 0)
-        reply->seconds = task.earlier_seconds;
-    return FinishedSector{
-        id, task.key, {task.jobs.begin(), task.jobs.end()}, failed_attempts, std::move(reply)};
+    if (end.reply && task.earlier_seconds > 0)
+        end.reply->seconds = task.earlier_seconds;
+    return FinishedSector{task.key, {task.jobs.begin(), task.jobs.end()}, std::move(end)};
 }
 
 std::vector<std::int64_t> JobBook::leave(std::uint64_t id, std::span<const std::int64_t> recorded) {
@@ -150,7 +173,7 @@ void JobBook::put_back(std::uint64_t id) {
     if (task.jobs.empty())
         forget(id);
     else
-        queue_.push_back(id);
+        put_in_queue(id, task);
 }
 
 void JobBook::update(const JobRow& row, const worker::SectorResult* result) {

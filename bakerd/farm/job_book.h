@@ -5,6 +5,7 @@
 #include "bakerd/executor/executor.h"
 #include "bakerd/farm/records.h"
 
+#include <array>
 #include <chrono>
 #include <compare>
 #include <condition_variable>
@@ -45,15 +46,14 @@ struct BakeKey {
 struct WantedSector {
     map::SectorCoordinate sector;
     std::optional<ResultRow> earlier;  // of which the bake reuses what holds
+    double seconds = 0;                // that baking it will take, as far as is known; 0: not
 };
 
 // What has come of a sector, for each job that wants it.
 struct FinishedSector {
-    std::uint64_t id = 0;  // of the task
     BakeKey key;
     std::vector<std::int64_t> jobs;
-    int failed_attempts = 0;
-    executor::Reply<worker::SectorResult> reply;
+    executor::SectorEnd end;
 };
 
 class JobBook {
@@ -73,13 +73,14 @@ class JobBook {
     [[nodiscard]] std::optional<std::int64_t> begin_request(const std::string& request_id);
     void end_request(const std::string& request_id);
 
-    // The next sector to bake; it is at work then.
-    [[nodiscard]] std::optional<executor::SectorTask> next();
+    // The next sector of this priority to bake; it is at work then.
+    [[nodiscard]] std::optional<executor::SectorTask> next(executor::Priority priority);
+
+    // Forgets a sector at work that no job wants any more; false where one does.
+    [[nodiscard]] bool give_up(std::uint64_t id);
 
     // Ends the work on a sector, and says for whom it was done. Jobs may go on joining until all have left.
-    [[nodiscard]] std::optional<FinishedSector> finish(std::uint64_t id,
-                                                       int failed_attempts,
-                                                       executor::Reply<worker::SectorResult> reply);
+    [[nodiscard]] std::optional<FinishedSector> finish(executor::SectorEnd end);
     // Of those for whom it was recorded, nobody waits for the sector any more. Gives jobs that joined
     // meanwhile; the task is forgotten where there are none.
     [[nodiscard]] std::vector<std::int64_t> leave(std::uint64_t id, std::span<const std::int64_t> recorded);
@@ -116,6 +117,8 @@ class JobBook {
         BakeKey key;
         worker::BakeRequest request;
         double earlier_seconds = 0;  // that the earlier result took from nothing; 0: there is none
+        double seconds = 0;          // that baking it will take, as far as is known; 0: not
+        executor::Priority priority = executor::Priority::nightly;  // the highest of its jobs'
         std::set<std::int64_t> jobs;
         bool running = false;
     };
@@ -125,6 +128,7 @@ class JobBook {
     void want(Job& job, std::span<const WantedSector> wanted, Join join);
     // `key` is the sector's, but for its tolerance.
     [[nodiscard]] std::uint64_t task_for(const Job& job, const WantedSector& wanted, BakeKey key, Join join);
+    void put_in_queue(std::uint64_t id, const Task& task);
     void drop_tasks(Job& job);
     void forget(std::uint64_t id);
     void changed(Job& job);
@@ -132,10 +136,11 @@ class JobBook {
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::map<std::int64_t, Job> jobs_;                // guarded by mutex_
-    std::unordered_map<std::uint64_t, Task> tasks_;   // guarded by mutex_
-    std::map<BakeKey, std::uint64_t> tasks_by_key_;   // guarded by mutex_
-    std::deque<std::uint64_t> queue_;                 // guarded by mutex_; in the order of baking
+    std::map<std::int64_t, Job> jobs_;               // guarded by mutex_
+    std::unordered_map<std::uint64_t, Task> tasks_;  // guarded by mutex_
+    std::map<BakeKey, std::uint64_t> tasks_by_key_;  // guarded by mutex_
+    std::array<std::deque<std::uint64_t>, 2>
+        queues_;  // guarded by mutex_; by priority, in the order of baking
     std::map<std::string, std::int64_t> by_request_;  // guarded by mutex_
     std::set<std::string> open_requests_;             // guarded by mutex_
     std::uint64_t next_task_ = 1;                     // guarded by mutex_

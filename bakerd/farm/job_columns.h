@@ -59,6 +59,7 @@ void columns(auto& codec, Is<JobRow> auto& job) {
     codec("largest_bound", job.largest_bound);
     codec("created_ms", job.created_ms);
     codec("ended_ms", job.ended_ms);
+    codec("priority", job.priority);
 }
 
 void columns(auto& codec, Is<JobSectorRow> auto& sector) {
@@ -78,6 +79,8 @@ void columns(auto& codec, Is<JobSectorRow> auto& sector) {
     bake::visit_values(codec, sector.stages);
     codec("failed_attempts", sector.failed_attempts);
     codec("error", sector.error);
+    codec("node", sector.node);
+    codec("log", sector.log);
 }
 
 }  // namespace drtv::farm

@@ -1,6 +1,7 @@
 // What a client asks for, and the sectors that this means.
 #pragma once
 
+#include "bakerd/executor/executor.h"
 #include "bakerd/map/ground.h"
 #include "bakerd/store/error.h"
 #include "settings/bake_settings.h"
@@ -24,7 +25,8 @@ struct JobRequest {
     std::string preset;              // the settings' origin, to be shown
     settings::JobSettings settings;  // each in its range (settings::check)
     std::optional<JobRegion> region;
-    std::string request_id;  // empty, or at most 64 bytes
+    executor::Priority priority = executor::Priority::interactive;
+    std::string request_id{};  // empty, or at most 64 bytes
 };
 
 // 8 x 8 tiles after each other, so that neighbours share a scene.

@@ -84,7 +84,7 @@ std::vector<WantedSector> waiting_of(std::span<const Checked<JobSectorRow>> sect
     }
     std::vector<WantedSector> wanted;
     for (const map::SectorCoordinate& sector : in_order_of_baking(std::move(waiting)))
-        wanted.push_back({sector, std::nullopt});
+        wanted.push_back({sector, std::nullopt, 0});
     return wanted;
 }
 
@@ -116,6 +116,7 @@ JobRow new_job(const JobRequest& request, const Digest& inventory) {
     job.preset = request.preset;
     job.settings = request.settings;
     job.region = request.region;
+    job.priority = request.priority;
     job.created_ms = unix_milliseconds();
     return job;
 }
@@ -154,7 +155,7 @@ std::vector<WantedSector> wanted_by(const Plan& plan) {
     std::vector<WantedSector> wanted;
     for (const PlannedSector& planned : plan.sectors) {
         if (!planned.reused)
-            wanted.push_back({planned.sector, planned.earlier});
+            wanted.push_back({planned.sector, planned.earlier, planned.seconds});
     }
     return wanted;
 }

@@ -13,14 +13,16 @@ namespace {
 
 JobSectorRow row_of(const FinishedSector& sector, std::int64_t job) {
     JobSectorRow row;
-    if (sector.reply)
-        row = baked_row(job, sector.key.sector, *sector.reply);
+    if (sector.end.reply)
+        row = baked_row(job, sector.key.sector, *sector.end.reply);
     row.job = job;
     row.sector = sector.key.sector;
-    row.failed_attempts = sector.failed_attempts;
-    if (!sector.reply) {
+    row.failed_attempts = sector.end.failed_attempts;
+    row.node = sector.end.node;
+    row.log = sector.end.log;
+    if (!sector.end.reply) {
         row.state = SectorState::failed;
-        row.error = sector.reply.error().sentence;
+        row.error = sector.end.reply.error().sentence;
     }
     return row;
 }
@@ -94,14 +96,15 @@ void Recorder::run() {
 
 bool Recorder::try_to_record(Pending& pending) {
     FinishedSector& sector = pending.sector;
-    const auto done =
-        sector.reply ? cache_.commit_if_there(*sector.reply, [&] { return write(pending); }) : write(pending);
+    const auto done = sector.end.reply
+                          ? cache_.commit_if_there(*sector.end.reply, [&] { return write(pending); })
+                          : write(pending);
     if (!done && done.error().code == store::ErrorCode::not_found) {
         spdlog::warn("sector ({}, {}) is baked again: {}",
                      sector.key.sector.i,
                      sector.key.sector.j,
                      done.error().message);
-        book_.put_back(sector.id);
+        book_.put_back(sector.end.id);
         work_waits_();
         return true;
     }
@@ -110,7 +113,7 @@ bool Recorder::try_to_record(Pending& pending) {
         return done.error().code == store::ErrorCode::data_loss;
     }
     // Jobs may have joined while this was written.
-    sector.jobs = book_.leave(sector.id, sector.jobs);
+    sector.jobs = book_.leave(sector.end.id, sector.jobs);
     if (!sector.jobs.empty())
         return try_to_record(pending);
     return true;
@@ -121,8 +124,8 @@ store::Result<void> Recorder::write(Pending& pending) {
     std::vector<JobRow> jobs;
     std::vector<std::int64_t> damaged;
     const auto done = database_.write([&](Connection& connection) {
-        if (sector.reply && !pending.kept) {
-            insert_result(connection, {0, sector.key.sector, sector.key.results_key, *sector.reply});
+        if (sector.end.reply && !pending.kept) {
+            insert_result(connection, {0, sector.key.sector, sector.key.results_key, *sector.end.reply});
             count_sectors(connection, 0, 0, 1);
         }
         for (const std::int64_t id : sector.jobs) {
@@ -137,13 +140,15 @@ store::Result<void> Recorder::write(Pending& pending) {
     });
     if (!done)
         return done;
-    if (sector.reply && !std::exchange(pending.kept, true))
-        cache_.added(*sector.reply);
-    if (!sector.reply)
-        spdlog::error(
-            "sector ({}, {}): {}", sector.key.sector.i, sector.key.sector.j, sector.reply.error().sentence);
+    if (sector.end.reply && !std::exchange(pending.kept, true))
+        cache_.added(*sector.end.reply);
+    if (!sector.end.reply)
+        spdlog::error("sector ({}, {}): {}",
+                      sector.key.sector.i,
+                      sector.key.sector.j,
+                      sector.end.reply.error().sentence);
     for (const JobRow& job : jobs) {
-        book_.update(job, sector.reply ? &*sector.reply : nullptr);
+        book_.update(job, sector.end.reply ? &*sector.end.reply : nullptr);
         if (job.state != JobState::running)
             cache_.job_ended();
         tell_end(job);
@@ -178,8 +183,8 @@ void Recorder::refuse(const Pending& pending, const store::Error& error) {
     if (error.code != store::ErrorCode::data_loss)
         return;
     // Jobs that joined meanwhile try for themselves.
-    if (!book_.leave(pending.sector.id, pending.sector.jobs).empty()) {
-        book_.put_back(pending.sector.id);
+    if (!book_.leave(pending.sector.end.id, pending.sector.jobs).empty()) {
+        book_.put_back(pending.sector.end.id);
         work_waits_();
     }
 }

@@ -1,6 +1,7 @@
 // What the farm's database keeps, as rows.
 #pragma once
 
+#include "bakerd/executor/executor.h"
 #include "bakerd/farm/job_request.h"
 #include "bakerd/map/digest.h"
 #include "bakerd/map/ground.h"
@@ -54,6 +55,7 @@ struct JobRow {
     float largest_bound = 0;          // of near hits, and of probes that others reused
     std::int64_t created_ms = 0;      // Unix time
     std::int64_t ended_ms = 0;        // 0: it has not
+    executor::Priority priority = executor::Priority::interactive;
 };
 
 // A sector of a job.
@@ -75,6 +77,9 @@ struct JobSectorRow {
     // When failed.
     int failed_attempts = 0;
     std::string error;
+    // Of the task on a cluster that baked it, or failed last (executor/executor.h).
+    std::string node;
+    std::string log;
 };
 
 // A sector whose file is that of a result: one that was baked for it, or one that was kept.

@@ -5,6 +5,7 @@
 #include "bakerd/worker/bake_threads.h"
 #include "bakerd/worker/worker.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
@@ -24,7 +25,10 @@ std::int64_t peak_memory_bytes() {
 class BatchRun {
   public:
     BatchRun(const BatchOptions& options, Answers answers, Worker& worker)
-        : options_(options), answers_(std::move(answers)), worker_(worker) {}
+        : options_(options),
+          log_(options.logs.empty() ? "" : fmt::format("{}/{}.log", options.logs, options.task)),
+          answers_(std::move(answers)),
+          worker_(worker) {}
 
     void bake(const BakeRequest& request) {
         const Digest key = answer_key(request);
@@ -56,7 +60,7 @@ class BatchRun {
     }
 
     void write(const map::SectorCoordinate& sector, const Digest& key, decltype(TaskAnswer::what) what) {
-        const TaskAnswer answer{std::move(what), options_.node, options_.log, peak_memory_bytes()};
+        const TaskAnswer answer{std::move(what), options_.node, log_, peak_memory_bytes()};
         if (auto written = answers_.write(key, answer); !written)
             note(sector, written.error().message);
     }
@@ -68,6 +72,7 @@ class BatchRun {
     }
 
     const BatchOptions& options_;
+    const std::string log_;
     const Answers answers_;
     Worker& worker_;
     std::mutex mutex_;
@@ -76,25 +81,28 @@ class BatchRun {
 
 }  // namespace
 
-tl::expected<void, std::string> run_batch(const BatchOptions& options) {
+tl::expected<void, BatchFailure> run_batch(const BatchOptions& options) {
+    const auto fail = [](std::string sentence, bool differs = false) {
+        return tl::unexpected(BatchFailure{std::move(sentence), differs});
+    };
     auto batch = read_batch(options.array, options.task);
     if (!batch)
-        return tl::unexpected(batch.error());
+        return fail(batch.error());
     if (auto differs = difference(batch->build, this_build()); !differs.empty())
-        return tl::unexpected(std::move(differs));
+        return fail(std::move(differs), true);
     auto answers = Answers::open(options.store_folder);
     if (!answers)
-        return tl::unexpected(answers.error().message);
+        return fail(answers.error().message);
     const auto worker = Worker::open(options.store_folder + "/blobs");
     if (!worker)
-        return tl::unexpected(worker.error());
+        return fail(worker.error());
     BatchRun run(options, std::move(*answers), **worker);
     BakeThreads threads(options.threads);
     for (const BakeRequest& request : batch->sectors)
         threads.enqueue([&run, &request] { run.bake(request); });
     threads.wait();
     if (!run.failure().empty())
-        return tl::unexpected(run.failure());
+        return fail(run.failure());
     return {};
 }
 

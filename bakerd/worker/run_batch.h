@@ -14,11 +14,16 @@ struct BatchOptions {
     std::size_t task = 0;
     int threads = 0;   // 0: as many as the machine has
     std::string node;  // for people
-    std::string log;   // file that standard error goes to; likewise
+    std::string logs;  // folder within the store for what tasks print: <number>.log; likewise
+};
+
+struct BatchFailure {
+    std::string sentence;
+    bool differs = false;  // this build or machine must not bake for the array: another node may
 };
 
 // Bakes what has no answer yet, and leaves an answer for each sector; more than one copy may run at the same
-// time. A sentence where this build or machine must not, or an answer could not be written.
-[[nodiscard]] tl::expected<void, std::string> run_batch(const BatchOptions& options);
+// time.
+[[nodiscard]] tl::expected<void, BatchFailure> run_batch(const BatchOptions& options);
 
 }  // namespace drtv::worker

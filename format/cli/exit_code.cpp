@@ -24,6 +24,11 @@ constexpr std::array meanings = {
     ExitMeaning{exit_unfinished, "the job was cancelled, or is not finished", false, true, false},
     ExitMeaning{exit_server, "bakerd cannot be reached, or refused", false, true, false},
     ExitMeaning{exit_timeout, "the time of --timeout is over; the job goes on", false, true, false},
+    ExitMeaning{exit_differs,
+                "this node must not bake for the daemon: its build, or its instruction set class, is another",
+                false,
+                false,
+                true},
     ExitMeaning{exit_interrupted, "interrupted by ctrl-C; a job goes on", true, true, true},
 };
 

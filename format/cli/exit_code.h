@@ -18,6 +18,7 @@ enum ExitCode : int {
     exit_unfinished = 6,
     exit_server = 7,
     exit_timeout = 8,
+    exit_differs = 9,
     exit_interrupted = 130,  // as shells count SIGINT
 };
 

@@ -24,20 +24,19 @@ class LocalExecutorTest : public testing::Test {
 
     void start(std::vector<std::string> command, int threads = 2) {
         LocalExecutor::Callbacks callbacks;
-        callbacks.next = [this]() -> std::optional<SectorTask> {
+        callbacks.next = [this](Priority priority) -> std::optional<SectorTask> {
             const std::lock_guard lock(mutex);
-            if (queue.empty())
+            if (queue.empty() || queue.front().priority != priority)
                 return std::nullopt;
             const SectorTask request = queue.front();
             queue.pop_front();
             changed.notify_all();
             return request;
         };
-        callbacks.finished = [this](std::uint64_t id, int failed_attempts,
-                                    Reply<worker::SectorResult> outcome) {
+        callbacks.finished = [this](SectorEnd end) {
             const std::lock_guard lock(mutex);
-            EXPECT_TRUE(outcomes.emplace(id, std::pair(failed_attempts, std::move(outcome))).second)
-                << id << " finished twice";
+            EXPECT_TRUE(outcomes.emplace(end.id, std::pair(end.failed_attempts, std::move(end.reply))).second)
+                << end.id << " finished twice";
             changed.notify_all();
         };
         executor = std::make_unique<LocalExecutor>(

@@ -57,11 +57,10 @@ class FarmTest : public testing::Test {
     }
 
     void open(std::int64_t cache_bytes = std::int64_t{1} << 30) {
-        auto opened =
-            Farm::open({data(),
-                        {DRTV_BINARY_DIR "/bakerd", "worker", "--blobs", data() + "/blobs", "--threads", "2"},
-                        2,
-                        cache_bytes});
+        auto opened = Farm::open(
+            {data(),
+             {{DRTV_BINARY_DIR "/bakerd", "worker", "--blobs", data() + "/blobs", "--threads", "2"}, 2},
+             cache_bytes});
         ASSERT_TRUE(opened) << opened.error().message;
         farm = std::move(*opened);
     }
@@ -81,13 +80,13 @@ class FarmTest : public testing::Test {
         settings::JobSettings settings;
         settings.bake = {
             .rays = static_cast<std::uint32_t>(rays), .bounces = 0, .reach_m = 8, .min_distance_m = 16};
-        return {map, "draft", settings, {}, ""};
+        return {.manifest = map, .preset = "draft", .settings = settings, .region = {}};
     }
     // Several seconds per sector.
     static JobRequest endless(const Digest& map) {
         settings::JobSettings settings;
         settings.bake = {.rays = 65536, .bounces = 8, .min_distance_m = 1};
-        return {map, "draft", settings, {}, ""};
+        return {.manifest = map, .preset = "draft", .settings = settings, .region = {}};
     }
 
     JobView submit(const JobRequest& request) {
@@ -454,7 +453,7 @@ TEST_F(FarmTest, AMapWithoutGroundSucceedsAtOnceWithNothing) {
 }
 
 TEST_F(FarmTest, OneFolderHasOneFarm) {
-    const auto second = Farm::open({data(), {"/bin/false"}, 1});
+    const auto second = Farm::open({data(), {{"/bin/false"}, 1}});
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, store::ErrorCode::failed_precondition);
 }

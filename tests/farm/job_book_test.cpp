@@ -35,7 +35,7 @@ TEST(JobBook, JobWaitsUntilASectorOfItIsTakenUp) {
     book.add(running_job(2), {&meadow, 1});
     EXPECT_TRUE(book.view(1)->waiting);
     EXPECT_EQ(book.view(1)->seconds_left, 12.5);
-    ASSERT_TRUE(book.next());
+    ASSERT_TRUE(book.next(executor::Priority::interactive));
     // Both wait for the same bake.
     EXPECT_FALSE(book.view(1)->waiting);
     EXPECT_FALSE(book.view(2)->waiting);
@@ -49,19 +49,19 @@ TEST(JobBook, JobWaitsUntilASectorOfItIsTakenUp) {
 TEST(JobBook, ReopenedJobGetsATaskOfItsOwn) {
     JobBook book;
     book.add(running_job(), {&meadow, 1});
-    const executor::SectorTask task = book.next().value();
-    ASSERT_TRUE(book.finish(task.id, 3, failure()));
+    const executor::SectorTask task = book.next(executor::Priority::interactive).value();
+    ASSERT_TRUE(book.finish({task.id, 3, failure()}));
     book.update(ended(running_job(), JobState::failed));
     book.reopen(running_job(), {&meadow, 1});
     EXPECT_TRUE(book.leave(task.id, std::array{job_id}).empty());
-    const auto again = book.next();
+    const auto again = book.next(executor::Priority::interactive);
     ASSERT_TRUE(again);
     EXPECT_NE(again->id, task.id);
     EXPECT_TRUE(book.is_running(job_id, meadow.sector));
     // The later task is found by others, although the one before had its key.
     book.add(running_job(6), {&meadow, 1});
-    EXPECT_FALSE(book.next());
-    const auto finished = book.finish(again->id, 3, failure());
+    EXPECT_FALSE(book.next(executor::Priority::interactive));
+    const auto finished = book.finish({again->id, 3, failure()});
     ASSERT_TRUE(finished);
     EXPECT_EQ(finished->jobs.size(), 2u);
 }

@@ -32,8 +32,8 @@ class RecorderTest : public BooksTest {
     }
     // The next sector of the queue as if it had been baked.
     FinishedSector bake_next() {
-        const executor::SectorTask task = book.next().value();
-        return book.finish(task.id, 0, result("file " + std::to_string(task.id))).value();
+        const executor::SectorTask task = book.next(executor::Priority::interactive).value();
+        return book.finish({task.id, 0, result("file " + std::to_string(task.id))}).value();
     }
     JobView wait(std::int64_t id, const std::function<bool(const JobView&)>& enough) {
         JobView view = book.view(id).value();
@@ -94,14 +94,14 @@ TEST_F(RecorderTest, WhatIsRefusedUntilTheEndWaitsAgainAfterARestart) {
     ASSERT_TRUE(load_jobs(*database, after));
     EXPECT_EQ(after.view(job.id)->row.state, JobState::running);
     EXPECT_EQ(after.view(job.id)->row.sectors_done, 1);
-    EXPECT_EQ(after.next()->request.sector, (map::SectorCoordinate{1, 0}));
+    EXPECT_EQ(after.next(executor::Priority::interactive)->request.sector, (map::SectorCoordinate{1, 0}));
 }
 
 TEST_F(RecorderTest, AJobThatJoinsWhileASectorIsAtWorkGetsItToo) {
     const JobRow one = add({{0, 0}});
     FinishedSector finished = bake_next();
     const JobRow two = add({{0, 0}});
-    EXPECT_FALSE(book.next()) << "it is at work";
+    EXPECT_FALSE(book.next(executor::Priority::interactive)) << "it is at work";
     recorder->record(std::move(finished));
     EXPECT_EQ(wait(one.id, has_ended).row.state, JobState::succeeded);
     EXPECT_EQ(wait(two.id, has_ended).row.state, JobState::succeeded);
@@ -120,13 +120,13 @@ TEST_F(RecorderTest, TheResultOfACancelledJobIsKeptAndNotCounted) {
     EXPECT_EQ(book.view(job.id)->row.sectors_done, 0);
     EXPECT_EQ(sector(job.id, {0, 0}).row.state, SectorState::waiting);
     EXPECT_EQ(cache.counts()->results, 1);
-    EXPECT_FALSE(book.next()) << "nobody wants the other one";
+    EXPECT_FALSE(book.next(executor::Priority::interactive)) << "nobody wants the other one";
 }
 
 TEST_F(RecorderTest, AFileThatLeftTheStoreBeforeItWasRecordedIsBakedAgain) {
     const JobRow job = add({{0, 0}});
     FinishedSector finished = bake_next();
-    blobs->remove(finished.reply->blobs.file);
+    blobs->remove(finished.end.reply->blobs.file);
     recorder->record(std::move(finished));
     for (int n = 0; n < 500 && woken == 0; ++n)
         std::this_thread::sleep_for(10ms);
@@ -137,9 +137,9 @@ TEST_F(RecorderTest, AFileThatLeftTheStoreBeforeItWasRecordedIsBakedAgain) {
 
 TEST_F(RecorderTest, AFailureIsTheSectors) {
     const JobRow job = add({{0, 0}});
-    const executor::SectorTask task = book.next().value();
+    const executor::SectorTask task = book.next(executor::Priority::interactive).value();
     recorder->record(
-        book.finish(task.id, 3, tl::unexpected(worker::RequestFailure{"it burnt", false})).value());
+        book.finish({task.id, 3, tl::unexpected(worker::RequestFailure{"it burnt", false})}).value());
     EXPECT_EQ(wait(job.id, has_ended).row.error, "1 of 1 sectors failed; sector (0, 0): it burnt");
     EXPECT_EQ(sector(job.id, {0, 0}).row.failed_attempts, 3);
     EXPECT_EQ(cache.counts()->results, 0);
@@ -156,9 +156,9 @@ TEST_F(RecorderTest, ARestartBakesSectorsOfDamagedRowsAgain) {
     JobBook after;
     ASSERT_TRUE(load_jobs(*database, after));
     EXPECT_EQ(after.view(job.id)->row.sectors_done, 1);
-    EXPECT_EQ(after.next()->request.sector, (map::SectorCoordinate{1, 0}));
-    EXPECT_EQ(after.next()->request.sector, (map::SectorCoordinate{2, 0}));
-    EXPECT_FALSE(after.next());
+    EXPECT_EQ(after.next(executor::Priority::interactive)->request.sector, (map::SectorCoordinate{1, 0}));
+    EXPECT_EQ(after.next(executor::Priority::interactive)->request.sector, (map::SectorCoordinate{2, 0}));
+    EXPECT_FALSE(after.next(executor::Priority::interactive));
 }
 
 TEST_F(RecorderTest, AJobWhoseRowIsDamagedMeanwhileFailsAndDoesNotHang) {
@@ -166,7 +166,7 @@ TEST_F(RecorderTest, AJobWhoseRowIsDamagedMeanwhileFailsAndDoesNotHang) {
     change("UPDATE job SET setting_bounces = 1");
     recorder->record(bake_next());
     EXPECT_NE(wait(job.id, has_ended).row.error.find("damaged"), std::string::npos);
-    EXPECT_FALSE(book.next());
+    EXPECT_FALSE(book.next(executor::Priority::interactive));
 }
 
 TEST_F(RecorderTest, AnEndIsFinalWhoeverTellsTheBookLast) {
@@ -204,7 +204,7 @@ TEST_F(RecorderTest, ARestartFailsAJobWhoseSettingsAreDamaged) {
     ASSERT_TRUE(load_jobs(*database, after));
     EXPECT_EQ(after.view(job.id)->row.state, JobState::failed);
     EXPECT_NE(after.view(job.id)->row.error.find("damaged"), std::string::npos);
-    EXPECT_FALSE(after.next());
+    EXPECT_FALSE(after.next(executor::Priority::interactive));
 }
 
 }  // namespace

@@ -31,10 +31,10 @@ class ServiceTest : public testing::Test {
         std::signal(SIGPIPE, SIG_IGN);
         folder_ = fs::temp_directory_path() / ("drtv_service_" + std::to_string(::getpid()) + "_" +
                                                testing::UnitTest::GetInstance()->current_test_info()->name());
-        farm_ = farm::Farm::open({.data_folder = folder_.string(),
-                                  .worker_command = {DRTV_BINARY_DIR "/bakerd", "worker", "--blobs",
-                                                     (folder_ / "blobs").string(), "--threads", "1"},
-                                  .threads = 1})
+        farm_ = farm::Farm::open(
+                    {.data_folder = folder_.string(),
+                     .executor = {.worker_command = {DRTV_BINARY_DIR "/bakerd", "worker", "--blobs",
+                                                     (folder_ / "blobs").string(), "--threads", "1"}}})
                     .value();
         server_ = Server::start(*farm_, "127.0.0.1:0", {}, {"a class", 7}).value();
         channel_ = grpc::CreateChannel(server_->address(), grpc::InsecureChannelCredentials());
@@ -345,7 +345,7 @@ TEST_F(ServiceTest, StoppingAnswersWatchersAndLaterCalls) {
 TEST(Server, TakenPortAndHalfTlsAreToldInASentence) {
     const fs::path folder = fs::temp_directory_path() / ("drtv_port_" + std::to_string(::getpid()));
     auto farm =
-        farm::Farm::open({.data_folder = folder.string(), .worker_command = {"/bin/false"}, .threads = 1})
+        farm::Farm::open({.data_folder = folder.string(), .executor = {.worker_command = {"/bin/false"}}})
             .value();
     const auto first = Server::start(*farm, "127.0.0.1:0", {}, {}).value();
     const auto second = Server::start(*farm, first->address(), {}, {});

@@ -1,0 +1,58 @@
+#include "bakerd/executor/array_folder.h"
+
+#include "bakerd/store/durable_file.h"
+#include "bakerd/store/text_bytes.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+namespace drtv::executor {
+
+namespace fs = std::filesystem;
+
+store::Result<ArrayFolder> ArrayFolder::open(const std::string& store_folder, const std::string& owner) {
+    ArrayFolder folder(fmt::format("{}/arrays/{}", store_folder, owner));
+    std::error_code code;
+    fs::create_directories(folder.folder_ + "/tmp", code);
+    if (code)
+        return store::fail(store::ErrorCode::internal,
+                           fmt::format("cannot make the folder {}/tmp: {}", folder.folder_, code.message()));
+    return folder;
+}
+
+std::string ArrayFolder::path_of(const std::string& key) const {
+    return fmt::format("{}/{}", folder_, key);
+}
+
+store::Result<void> ArrayFolder::write(const std::string& key, const worker::ArrayFile& array) const {
+    return store::write_durably(folder_ + "/tmp", path_of(key), store::bytes_of_text(worker::encode(array)));
+}
+
+void ArrayFolder::remove(const std::string& key) const {
+    ::unlink(path_of(key).c_str());
+}
+
+std::vector<std::pair<std::string, worker::ArrayFile>> ArrayFolder::all() const {
+    std::vector<std::pair<std::string, worker::ArrayFile>> arrays;
+    std::error_code code;
+    for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code)) {
+        const std::string key = entry->path().filename().string();
+        if (key == "tmp")
+            continue;
+        const auto bytes = store::read_all(entry->path().string());
+        auto array = bytes
+                         ? worker::decode_array({reinterpret_cast<const char*>(bytes->data()), bytes->size()})
+                         : tl::unexpected(bytes.error().message);
+        if (!array)
+            spdlog::warn("array {}: {}", key, array.error());
+        arrays.emplace_back(key, array ? std::move(*array) : worker::ArrayFile{});
+    }
+    return arrays;
+}
+
+}  // namespace drtv::executor

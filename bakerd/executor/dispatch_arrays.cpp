@@ -1,0 +1,163 @@
+// The dispatcher's arrays and what the queue tells of them.
+#include "bakerd/executor/dispatcher.h"
+#include "bakerd/store/durable_file.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace drtv::executor {
+namespace {
+
+constexpr int max_releases = 3;
+constexpr std::chrono::minutes nodes_stay_excluded(10);
+
+// The sentence with which a task's log ends; it may be longer than what fits into a line of ours.
+std::string last_words(const std::string& log) {
+    const auto bytes = store::read_all(log);
+    if (!bytes)
+        return "";
+    std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    while (text.ends_with('\n'))
+        text.remove_suffix(1);
+    const std::size_t begin = text.rfind('\n');
+    return std::string((begin == text.npos ? text : text.substr(begin + 1)).substr(0, 300));
+}
+
+std::string join(const std::string& what, const std::string& words) {
+    return words.empty() ? what : fmt::format("{}: {}", what, words);
+}
+
+}  // namespace
+
+void Dispatcher::load_arrays() {
+    for (auto& [key, file] : folder_.all()) {
+        if (file.batches.empty() || file.build != worker::this_build()) {
+            spdlog::info("array {} is another build's: it is cancelled", key);
+            cluster_->cancel(key);
+            folder_.remove(key);
+            continue;
+        }
+        std::vector<std::vector<Digest>> batches;
+        for (const std::vector<worker::BakeRequest>& sectors : file.batches) {
+            std::vector<Digest>& batch = batches.emplace_back();
+            for (const worker::BakeRequest& request : sectors) {
+                batch.push_back(worker::answer_key(request));
+                left_behind_[batch.back()] = {key, batches.size() - 1};
+            }
+        }
+        spdlog::info("array {} goes on: {} tasks", key, batches.size());
+        ArrayWatch watch(batches, options_.patience, now());
+        // Whether the cluster heard of it is not known.
+        arrays_.emplace(key, Array{Priority::nightly, std::move(batches), std::move(watch), 0, false});
+    }
+}
+
+void Dispatcher::ask_queue() {
+    next_queue_ = now() + options_.queue_every;
+    if (arrays_.empty())
+        return;
+    std::vector<std::string> keys;
+    for (const auto& [key, array] : arrays_)
+        keys.push_back(key);
+    auto tasks = cluster_->list(keys);
+    next_queue_ = now() + options_.queue_every;
+    if (!tasks) {
+        spdlog::warn("{}", tasks.error());
+        return;
+    }
+    std::ranges::sort(*tasks, {}, &ClusterTask::key);
+    for (auto& [key, array] : arrays_) {
+        const auto rows = std::ranges::equal_range(*tasks, key, {}, &ClusterTask::key);
+        array.watch.hear(rows, now());
+        judge(key, array);
+    }
+}
+
+void Dispatcher::judge(const std::string& key, Array& array) {
+    std::vector<ClusterTask> waiting = array.watch.alive();
+    std::erase_if(waiting, [&](const ClusterTask& task) {
+        return task.state != TaskState::delayed &&
+               (task.state != TaskState::held || array.releases[task.number]++ >= max_releases);
+    });
+    cluster_->nudge(waiting);
+    const std::vector<EndedTask> ended = array.watch.take_ended(now());
+    for (const EndedTask& task : ended)
+        try_again(array, task);
+    if (!ended.empty())
+        spdlog::info("array {}: {} tasks ended with sectors to bake: {}",
+                     key,
+                     ended.size(),
+                     ended.front().last ? ended.front().last->words : "the cluster does not know them");
+    if (const std::vector<ClusterTask> idle = array.watch.take_idle(); !idle.empty())
+        cluster_->cancel(idle);
+}
+
+void Dispatcher::try_again(const Array& array, const EndedTask& ended) {
+    const auto state = ended.last ? ended.last->state : TaskState::lost;
+    const bool was_refused = !ended.last && !array.was_taken && !array.watch.is_known();
+    const bool differs = state == TaskState::done && ended.last->exit_status == options_.differs_status;
+    std::string words = "the cluster lost its tasks";
+    std::string log;
+    if (ended.last) {
+        log = fmt::format("logs/{}/{}.log", ended.last->key, ended.last->number);
+        const std::string printed = last_words(options_.store_folder + "/" + log);
+        words = join(fmt::format("its task ended on node {} as {} (exit status {}; {})",
+                                 ended.last->node,
+                                 ended.last->words,
+                                 ended.last->exit_status,
+                                 log),
+                     printed);
+        if (differs)
+            excluded_[ended.last->node] = {now() + nodes_stay_excluded, printed};
+    }
+    for (const Digest& key : ended.unanswered) {
+        const auto found = sectors_.find(key);
+        if (found == sectors_.end())
+            continue;
+        Sector& sector = found->second;
+        sector.place.reset();
+        if (state == TaskState::out_of_memory)
+            costs_.learn_too_little(sector.request, std::max(array.memory_bytes, std::int64_t{1} << 30));
+        if (state == TaskState::lost)
+            sector.losses += was_refused ? 0 : 1;
+        else if (!differs)
+            ++sector.failures;
+        sector.alone = sector.alone || (!ended.is_single && !differs && state != TaskState::lost &&
+                                        state != TaskState::cancelled);
+        // Without the earlier result: it may be what the worker cannot bear.
+        if (sector.failures > 0)
+            sector.request.earlier.reset();
+        if (sector.failures >= max_attempts || sector.losses >= max_losses)
+            finish(key,
+                   tl::unexpected(worker::RequestFailure{
+                       fmt::format("{} (tried {} times)", words, sector.failures + sector.losses), false}),
+                   ended.last ? ended.last->node : "",
+                   log);
+        else
+            fresh_.insert(key);
+    }
+}
+
+void Dispatcher::close_arrays() {
+    std::erase_if(arrays_, [this](auto& entry) {
+        auto& [key, array] = entry;
+        if (!array.watch.is_over())
+            return false;
+        // Behind a daemon that was away more may be left than the last list shows.
+        if (!array.watch.alive().empty())
+            cluster_->cancel(key);
+        folder_.remove(key);
+        for (const std::vector<Digest>& batch : array.batches) {
+            for (const Digest& sector : batch) {
+                spent_.emplace_back(sector, now());
+                left_behind_.erase(sector);
+            }
+        }
+        return true;
+    });
+}
+
+}  // namespace drtv::executor

@@ -1,0 +1,188 @@
+// How the dispatcher makes arrays of what is ready.
+#include "bakerd/executor/batches.h"
+#include "bakerd/executor/dispatcher.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <random>
+
+namespace drtv::executor {
+namespace {
+
+std::size_t max_open(Priority priority) {
+    return priority == Priority::interactive ? 8 : 2;
+}
+
+std::string new_key() {
+    std::random_device random;
+    return fmt::format("drtv-{:08x}{:08x}", random(), random());
+}
+
+}  // namespace
+
+void Dispatcher::view_cluster() {
+    auto view = cluster_->view();
+    next_view_ = now() + (view ? options_.cluster_every : options_.queue_every);
+    if (!view) {
+        spdlog::warn("{}", view.error());
+        return;
+    }
+    view_ = std::move(*view);
+    std::erase_if(excluded_, [this](const auto& node) { return node.second.until <= now(); });
+}
+
+bool Dispatcher::may_bake(const ClusterNode& node) const {
+    return node.is_up && !excluded_.contains(node.name);
+}
+
+// Better than to wait for somebody who mends the nodes and does not know that he should.
+void Dispatcher::refuse_all(Priority priority) {
+    const auto& [node, exclusion] = *excluded_.begin();
+    const std::string why = fmt::format("no node may bake; of node {}: {}", node, exclusion.why);
+    for (const Digest& key : std::exchange(ready_[static_cast<std::size_t>(priority)], {})) {
+        if (const auto found = sectors_.find(key); found != sectors_.end() && !found->second.place)
+            finish(key, tl::unexpected(worker::RequestFailure{why, false}));
+    }
+}
+
+std::size_t Dispatcher::slots() const {
+    std::size_t slots = 0;
+    for (const ClusterNode& node : view_->nodes) {
+        if (may_bake(node))
+            slots += static_cast<std::size_t>(node.threads / view_->task_threads);
+    }
+    return std::max(slots, std::size_t{1});
+}
+
+std::int64_t Dispatcher::memory_for(std::span<const std::vector<Digest>> batches) const {
+    std::int64_t wanted = 0;
+    for (const std::vector<Digest>& batch : batches) {
+        for (const Digest& key : batch)
+            wanted = std::max(wanted, costs_.memory_bytes(sectors_.at(key).request));
+    }
+    // A site that has not told Slurm of its nodes' memory has nodes of 1 MB.
+    std::int64_t largest = 0;
+    for (const ClusterNode& node : view_->nodes)
+        largest = std::max(largest, node.memory_bytes);
+    return largest < (std::int64_t{1} << 30) ? 0 : std::min(wanted, largest);
+}
+
+std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
+    std::deque<Digest>& ready = ready_[static_cast<std::size_t>(priority)];
+    std::vector<std::vector<Digest>> batches;
+    std::vector<Digest> keys;
+    std::vector<double> seconds;
+    bool is_known = true;
+    // What lies here may have been given up, or lie twice.
+    std::set<Digest> seen;
+    for (const Digest& key : ready) {
+        const auto found = sectors_.find(key);
+        if (found == sectors_.end() || found->second.place || !seen.insert(key).second)
+            continue;
+        if (found->second.alone) {
+            batches.push_back({key});
+            continue;
+        }
+        const double cost =
+            found->second.seconds > 0 ? found->second.seconds : costs_.seconds(found->second.kind);
+        is_known = is_known && cost > 0;
+        keys.push_back(key);
+        seconds.push_back(cost);
+    }
+    ready.clear();
+    const std::size_t most = max_tasks_ > 0 ? std::min(max_tasks_, view_->max_tasks) : view_->max_tasks;
+    if (batches.size() > most) {
+        for (std::size_t n = most; n < batches.size(); ++n)
+            ready.push_back(batches[n].front());
+        batches.resize(most);
+    }
+    BatchRule rule;
+    rule.batch_s = options_.batch_s;
+    rule.threads = view_->task_threads;
+    rule.slots = slots();
+    rule.max_batches = most - batches.size();
+    rule.is_last = is_dry_[static_cast<std::size_t>(priority)];
+    if (!is_known) {
+        // A few first, which tell what the others cost.
+        std::ranges::fill(seconds, 1.0);
+        rule.batch_s = 0;
+        rule.is_last = false;
+        const bool is_learning = std::ranges::any_of(
+            arrays_, [&](const auto& array) { return array.second.priority == priority; });
+        rule.max_batches = is_learning ? 0 : std::min(rule.max_batches, 2 * rule.slots);
+    }
+    std::size_t begin = 0;
+    for (const std::size_t end : cut_batches(seconds, rule)) {
+        batches.emplace_back(keys.begin() + static_cast<std::ptrdiff_t>(begin),
+                             keys.begin() + static_cast<std::ptrdiff_t>(end));
+        begin = end;
+    }
+    ready.insert(ready.end(), keys.begin() + static_cast<std::ptrdiff_t>(begin), keys.end());
+    return batches;
+}
+
+void Dispatcher::submit(Priority priority) {
+    if (!view_ || now() < next_submit_ || ready_[static_cast<std::size_t>(priority)].empty())
+        return;
+    const bool none_may = !excluded_.empty() && std::ranges::none_of(view_->nodes, [this](const auto& node) {
+        return may_bake(node);
+    });
+    if (none_may) {
+        refuse_all(priority);
+        return;
+    }
+    const auto open =
+        std::ranges::count_if(arrays_, [&](const auto& array) { return array.second.priority == priority; });
+    if (static_cast<std::size_t>(open) >= max_open(priority))
+        return;
+    std::vector<std::vector<Digest>> batches = cut(priority);
+    if (batches.empty())
+        return;
+    ClusterArray array;
+    array.key = new_key();
+    array.tasks = batches.size();
+    array.priority = priority;
+    array.threads = view_->task_threads;
+    array.memory_bytes = memory_for(batches);
+    array.command = options_.task_command;
+    const std::string logs = fmt::format("logs/{}", array.key);
+    array.command.insert(array.command.end(), {"--array", folder_.path_of(array.key), "--logs", logs});
+    array.log_folder = fmt::format("{}/{}", options_.store_folder, logs);
+    for (const auto& [node, exclusion] : excluded_)
+        array.excluded_nodes.insert(node);
+    worker::ArrayFile file{worker::this_build(), {}};
+    std::size_t sectors = 0;
+    for (std::size_t task = 0; task < batches.size(); ++task) {
+        std::vector<worker::BakeRequest>& batch = file.batches.emplace_back();
+        for (const Digest& key : batches[task]) {
+            Sector& sector = sectors_.at(key);
+            sector.place = Place{array.key, task};
+            batch.push_back(sector.request);
+            ++sectors;
+        }
+    }
+    std::error_code code;
+    std::filesystem::create_directories(array.log_folder, code);
+    const auto written = folder_.write(array.key, file);
+    const auto taken =
+        written ? cluster_->submit(array) : tl::unexpected(Refusal{written.error().message, false});
+    ArrayWatch watch(batches, options_.patience, now());
+    arrays_.emplace(
+        array.key,
+        Array{priority, std::move(batches), std::move(watch), array.memory_bytes, taken.has_value()});
+    if (taken) {
+        refusals_ = 0;
+        max_tasks_ = 2 * max_tasks_ >= view_->max_tasks ? 0 : 2 * max_tasks_;
+        spdlog::info("array {}: {} sectors in {} tasks", array.key, sectors, array.tasks);
+        return;
+    }
+    spdlog::warn("array {} was perhaps not taken: {}", array.key, taken.error().sentence);
+    next_submit_ = now() + options_.pause * (1 << std::min(refusals_++, 4));
+    if (taken.error().is_too_large)
+        max_tasks_ = std::max(array.tasks / 2, std::size_t{1});
+}
+
+}  // namespace drtv::executor

@@ -1,0 +1,202 @@
+#include "bakerd/executor/dispatcher.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+namespace drtv::executor {
+namespace {
+
+// Taken up ahead of what is at work: as much as fills an array, and it is known what goes together.
+constexpr std::size_t max_ready = 20'000;
+
+constexpr std::chrono::minutes spent_answers_stay(1);
+
+std::size_t index_of(Priority priority) {
+    return static_cast<std::size_t>(priority);
+}
+
+}  // namespace
+
+store::Result<Dispatcher> Dispatcher::open(DispatchOptions options,
+                                           Cluster& cluster,
+                                           store::BlobStore& blobs,
+                                           Executor::Callbacks callbacks) {
+    auto folder = ArrayFolder::open(options.store_folder, options.owner);
+    if (!folder)
+        return tl::unexpected(folder.error());
+    auto answers = worker::Answers::open(options.store_folder);
+    if (!answers)
+        return tl::unexpected(answers.error());
+    Dispatcher dispatcher(
+        std::move(options), cluster, blobs, std::move(callbacks), std::move(*folder), std::move(*answers));
+    dispatcher.load_arrays();
+    return dispatcher;
+}
+
+Dispatcher::Dispatcher(DispatchOptions options,
+                       Cluster& cluster,
+                       store::BlobStore& blobs,
+                       Executor::Callbacks callbacks,
+                       ArrayFolder folder,
+                       worker::Answers answers)
+    : options_(std::move(options)),
+      cluster_(&cluster),
+      blobs_(&blobs),
+      callbacks_(std::move(callbacks)),
+      folder_(std::move(folder)),
+      answers_(std::move(answers)),
+      next_answers_(now()),
+      next_queue_(now()),
+      next_view_(now()),
+      next_submit_(now()) {}
+
+Dispatcher::Time Dispatcher::step() {
+    if (now() >= next_view_)
+        view_cluster();
+    pull();
+    if (now() >= next_answers_ || !fresh_.empty())
+        collect_answers();
+    if (now() >= next_queue_) {
+        give_up_unwanted();
+        ask_queue();
+        close_arrays();
+        remove_spent_answers();
+    }
+    for (const Priority priority : {Priority::interactive, Priority::nightly})
+        submit(priority);
+    return sectors_.empty() && arrays_.empty() ? next_view_ : std::min(next_answers_, next_queue_);
+}
+
+void Dispatcher::pull() {
+    for (const Priority priority : {Priority::interactive, Priority::nightly}) {
+        bool& dry = is_dry_[index_of(priority)];
+        dry = false;
+        while (!dry && ready_[index_of(priority)].size() + fresh_.size() < max_ready) {
+            if (auto task = callbacks_.next(priority))
+                take_up(std::move(*task));
+            else
+                dry = true;
+        }
+    }
+}
+
+void Dispatcher::take_up(SectorTask task) {
+    const Digest key = worker::answer_key(task.request);
+    const auto [entry, is_new] = sectors_.try_emplace(key);
+    Sector& sector = entry->second;
+    sector.ids.push_back(task.id);
+    if (!is_new) {
+        // Two jobs want the same, and one of them was opened again.
+        if (!sector.place)
+            fresh_.insert(key);
+        return;
+    }
+    sector.request = std::move(task.request);
+    sector.kind = Costs::kind_of(sector.request);
+    sector.priority = task.priority;
+    sector.seconds = task.seconds;
+    const auto known = left_behind_.find(key);
+    if (known == left_behind_.end()) {
+        fresh_.insert(key);
+        return;
+    }
+    sector.place = std::move(known->second);
+    left_behind_.erase(known);
+}
+
+void Dispatcher::collect_answers() {
+    next_answers_ = now() + options_.answers_every;
+    std::set<Digest> asked = fresh_;
+    for (const auto& [key, sector] : sectors_) {
+        if (sector.place)
+            asked.insert(asked.end(), key);
+    }
+    for (const Digest& key : answers_.among(asked)) {
+        fresh_.erase(key);
+        if (const auto answer = answers_.read(key))
+            deliver(key, *answer);
+        else
+            fresh_.insert(key);
+    }
+    for (const Digest& key : fresh_) {
+        const Sector& sector = sectors_.at(key);
+        ready_[index_of(sector.priority)].push_back(key);
+    }
+    fresh_.clear();
+}
+
+void Dispatcher::deliver(const Digest& key, const worker::TaskAnswer& answer) {
+    Sector& sector = sectors_.at(key);
+    const auto* result = std::get_if<worker::SectorResult>(&answer.what);
+    if (result == nullptr) {
+        finish(key, tl::unexpected(std::get<worker::RequestFailure>(answer.what)), answer.node, answer.log);
+        return;
+    }
+    const worker::ResultBlobs& blobs = result->blobs;
+    if (!blobs_->has(blobs.file) || !blobs_->has(blobs.footprint) || !blobs_->has(blobs.inventory)) {
+        answers_.remove(key);
+        settle(key, sector);
+        if (++sector.losses < max_losses)
+            fresh_.insert(key);
+        else
+            finish(key,
+                   tl::unexpected(
+                       worker::RequestFailure{"tasks baked it, but its files are not in the store", false}));
+        return;
+    }
+    costs_.learn(sector.request, answer);
+    finish(key, *result, answer.node, answer.log);
+}
+
+void Dispatcher::finish(const Digest& key,
+                        const Reply<worker::SectorResult>& reply,
+                        const std::string& node,
+                        const std::string& log) {
+    const auto found = sectors_.find(key);
+    Sector sector = std::move(found->second);
+    if (!sector.place)
+        spent_.emplace_back(key, now());
+    settle(key, sector);
+    sectors_.erase(found);
+    fresh_.erase(key);
+    for (const std::uint64_t id : sector.ids)
+        callbacks_.finished({id, sector.failures, reply, node, log});
+}
+
+void Dispatcher::settle(const Digest& key, Sector& sector) {
+    if (!sector.place)
+        return;
+    if (const auto array = arrays_.find(sector.place->array); array != arrays_.end())
+        array->second.watch.settle(sector.place->task, key);
+    sector.place.reset();
+}
+
+void Dispatcher::give_up_unwanted() {
+    for (auto entry = sectors_.begin(); entry != sectors_.end();) {
+        auto& [key, sector] = *entry;
+        std::erase_if(sector.ids, [this](std::uint64_t id) { return callbacks_.give_up(id); });
+        if (!sector.ids.empty()) {
+            ++entry;
+            continue;
+        }
+        settle(key, sector);
+        fresh_.erase(key);
+        entry = sectors_.erase(entry);
+    }
+}
+
+// Until then a task that runs twice finds them, and a daemon that starts again.
+void Dispatcher::remove_spent_answers() {
+    const auto kept = std::ranges::partition(spent_, [this](const auto& spent) {
+                          return now() - spent.second < spent_answers_stay;
+                      }).begin();
+    for (auto spent = kept; spent != spent_.end(); ++spent) {
+        if (!sectors_.contains(spent->first))
+            answers_.remove(spent->first);
+    }
+    spent_.erase(kept, spent_.end());
+}
+
+}  // namespace drtv::executor

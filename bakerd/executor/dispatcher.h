@@ -1,0 +1,149 @@
+// Sends sectors to a cluster as arrays of tasks, and takes in their answers. What is true stands in the
+// store: an array's file, written before the cluster hears of it, and the answers of its tasks; the queue
+// only says what is alive. So the daemon, a task, a node or the queue may die at any moment. Of one thread.
+#pragma once
+
+#include "bakerd/executor/array_folder.h"
+#include "bakerd/executor/array_watch.h"
+#include "bakerd/executor/cluster.h"
+#include "bakerd/executor/costs.h"
+#include "bakerd/executor/executor.h"
+#include "bakerd/store/blob_store.h"
+#include "bakerd/worker/answers.h"
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace drtv::executor {
+
+struct DispatchOptions {
+    std::string store_folder;
+    std::string owner;                      // of the store (store/owner.h)
+    std::vector<std::string> task_command;  // what a task runs, but for its array's file
+    int differs_status = -1;                // with which it ends on a node that must not bake for the daemon
+    double batch_s = 90;                    // that a batch should take
+    // Times between looks.
+    std::chrono::milliseconds answers_every = std::chrono::milliseconds(1500);
+    std::chrono::milliseconds queue_every = std::chrono::seconds(5);
+    std::chrono::milliseconds cluster_every = std::chrono::seconds(60);
+    // Before another array, after one that was not taken; twice as long each time, up to 16 times.
+    std::chrono::milliseconds pause = std::chrono::seconds(4);
+    Patience patience;
+    std::function<std::chrono::steady_clock::time_point()> clock = std::chrono::steady_clock::now;
+};
+
+// Tasks that had a sector may be lost this often: the tasks', not the sector's fault.
+inline constexpr int max_losses = 10;
+
+class Dispatcher {
+  public:
+    using Time = ArrayWatch::Time;
+
+    // Goes on with the arrays that the owner left in the store.
+    [[nodiscard]] static store::Result<Dispatcher> open(DispatchOptions options,
+                                                        Cluster& cluster,
+                                                        store::BlobStore& blobs,
+                                                        Executor::Callbacks callbacks);
+
+    // Does what is due, and says when something will be again.
+    [[nodiscard]] Time step();
+
+  private:
+    // A task of an array.
+    struct Place {
+        std::string array;
+        std::size_t task = 0;
+    };
+    struct Sector {
+        std::vector<std::uint64_t> ids;  // of the caller
+        worker::BakeRequest request;
+        Digest kind;  // Costs::kind_of
+        Priority priority = Priority::interactive;
+        double seconds = 0;
+        int failures = 0;            // of tasks that had it
+        int losses = 0;              // of tasks that had it, by no fault of theirs
+        bool alone = false;          // a task that had it, and others, failed
+        std::optional<Place> place;  // nothing: it is ready
+    };
+    // A node that must not bake.
+    struct Exclusion {
+        Time until;
+        std::string why;
+    };
+    struct Array {
+        Priority priority = Priority::interactive;
+        std::vector<std::vector<Digest>> batches;
+        ArrayWatch watch;
+        std::int64_t memory_bytes = 0;
+        bool was_taken = true;                  // the cluster did not refuse it
+        std::map<std::size_t, int> releases{};  // of tasks that were held
+    };
+
+    Dispatcher(DispatchOptions options,
+               Cluster& cluster,
+               store::BlobStore& blobs,
+               Executor::Callbacks callbacks,
+               ArrayFolder folder,
+               worker::Answers answers);
+    void load_arrays();
+    [[nodiscard]] Time now() const { return options_.clock(); }
+
+    // dispatcher.cpp: sectors and their answers.
+    void pull();
+    void take_up(SectorTask task);
+    void collect_answers();
+    void deliver(const Digest& key, const worker::TaskAnswer& answer);
+    void finish(const Digest& key,
+                const Reply<worker::SectorResult>& reply,
+                const std::string& node = {},
+                const std::string& log = {});
+    void settle(const Digest& key, Sector& sector);
+    void remove_spent_answers();
+    void give_up_unwanted();
+
+    // dispatch_arrays.cpp: arrays and the queue.
+    void ask_queue();
+    void judge(const std::string& key, Array& array);
+    void try_again(const Array& array, const EndedTask& ended);
+    void close_arrays();
+    void view_cluster();
+    void submit(Priority priority);
+    [[nodiscard]] std::vector<std::vector<Digest>> cut(Priority priority);
+    void refuse_all(Priority priority);
+    [[nodiscard]] bool may_bake(const ClusterNode& node) const;
+    [[nodiscard]] std::size_t slots() const;
+    [[nodiscard]] std::int64_t memory_for(std::span<const std::vector<Digest>> batches) const;
+
+    DispatchOptions options_;
+    Cluster* cluster_;
+    store::BlobStore* blobs_;
+    Executor::Callbacks callbacks_;
+    ArrayFolder folder_;
+    worker::Answers answers_;
+
+    std::map<Digest, Sector> sectors_;            // taken up, by the key of the answer
+    std::set<Digest> fresh_;                      // of these, for which no answer has been looked for
+    std::array<std::deque<Digest>, 2> ready_;     // by priority, in the order of baking
+    std::array<bool, 2> is_dry_{};                // nothing waits behind what is ready, by priority
+    std::map<std::string, Array> arrays_;         // that are open
+    std::map<Digest, Place> left_behind_;         // in an earlier run's arrays, and not taken up yet
+    std::vector<std::pair<Digest, Time>> spent_;  // answers that were delivered, and when
+    std::map<std::string, Exclusion> excluded_;   // nodes
+    Costs costs_;
+    std::optional<ClusterView> view_;
+    std::size_t max_tasks_ = 0;  // of the next array; 0: what the cluster allows
+    int refusals_ = 0;           // in a row
+    Time next_answers_, next_queue_, next_view_, next_submit_;
+};
+
+}  // namespace drtv::executor

@@ -1,0 +1,161 @@
+#include "bakerd/executor/slurm.h"
+
+#include "bakerd/executor/run_command.h"
+#include "bakerd/executor/slurm_text.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <set>
+
+namespace drtv::executor {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+std::string batch_script(const std::vector<std::string>& command) {
+    std::string script = "exec";
+    for (const std::string& argument : command)
+        script += " " + quote(argument);
+    return script;
+}
+
+std::string name_of(const ClusterTask& task) {
+    return fmt::format("{}_{}", task.job, task.number);
+}
+
+}  // namespace
+
+tl::expected<std::string, std::string> Slurm::run(const std::vector<std::string>& command) const {
+    return run_command(command, options_.time_limit);
+}
+
+tl::expected<void, Refusal> Slurm::submit(const ClusterArray& array) {
+    std::string tasks = fmt::format("--array=0-{}", array.tasks - 1);
+    if (options_.throttle > 0)
+        tasks += fmt::format("%{}", options_.throttle);
+    std::vector<std::string> command = {"sbatch",
+                                        "--parsable",
+                                        "--job-name=" + array.key,
+                                        "--dependency=singleton",
+                                        "--requeue",
+                                        std::move(tasks),
+                                        "--chdir=/",
+                                        fmt::format("--output={}/%a.log", array.log_folder),
+                                        "--open-mode=append",
+                                        "--export=NIL"};
+    const auto add = [&](const char* name, const std::string& value) {
+        if (!value.empty())
+            command.push_back(fmt::format("--{}={}", name, value));
+    };
+    add("account", options_.account);
+    add("partition", options_.partition);
+    add("qos", options_.qos);
+    add("constraint", options_.constraint);
+    add("exclude", fmt::format("{}", fmt::join(array.excluded_nodes, ",")));
+    if (options_.time_limit_min > 0)
+        add("time", std::to_string(options_.time_limit_min));
+    add("cpus-per-task", std::to_string(array.threads));
+    if (array.memory_bytes > 0)
+        add("mem", fmt::format("{}M", (array.memory_bytes + (1 << 20) - 1) >> 20));
+    // Among one user's own jobs it is what the order is made by.
+    if (array.priority == Priority::nightly)
+        command.emplace_back("--nice=1000");
+    command.insert(command.end(), options_.arguments.begin(), options_.arguments.end());
+    command.push_back("--wrap=" + batch_script(array.command));
+    const auto said = run(command);
+    if (!said)
+        return tl::unexpected(Refusal{said.error(), is_too_large(said.error())});
+    if (!is_job_number(*said))
+        return tl::unexpected(
+            Refusal{fmt::format("sbatch gave no job's number, but {:?}", said->substr(0, 80)), false});
+    return {};
+}
+
+tl::expected<std::vector<ClusterTask>, std::string> Slurm::list(std::span<const std::string> keys) {
+    const auto said =
+        run({"squeue",
+             "--me",
+             "--noheader",
+             "--array",
+             "--states=all",
+             fmt::format("--name={}", fmt::join(keys, ",")),
+             "--Format=Name:|,ArrayJobID:|,ArrayTaskID:|,State:|,Reason:|,BatchHost:|,exit_code:|"});
+    if (!said)
+        return Failure(said.error());
+    std::vector<ClusterTask> tasks;
+    for (const std::string_view row : lines_of(*said)) {
+        auto task = parse_task(row);
+        // Half of a list would look as if the other tasks were gone.
+        if (!task)
+            return Failure(fmt::format("squeue gave a row that is none: {}", row.substr(0, 80)));
+        tasks.push_back(std::move(*task));
+    }
+    return tasks;
+}
+
+tl::expected<ClusterView, std::string> Slurm::view() {
+    const auto config = run({"scontrol", "show", "config"});
+    if (!config)
+        return Failure(config.error());
+    std::vector<std::string> ask = {"sinfo", "--noheader", "--Node", "--format=%N|%c|%m|%T|%E"};
+    if (!options_.partition.empty())
+        ask.push_back("--partition=" + options_.partition);
+    const auto nodes = run(ask);
+    if (!nodes)
+        return Failure(nodes.error());
+    ClusterView view;
+    // The highest number of a task is one less.
+    view.max_tasks = std::min(
+        view.max_tasks, std::max(configured(*config, "MaxArraySize").value_or(1001), std::size_t{2}) - 1);
+    view.max_tasks = std::clamp(
+        configured(*config, "max_array_tasks").value_or(view.max_tasks), std::size_t{1}, view.max_tasks);
+    std::set<std::string> known;
+    for (const std::string_view row : lines_of(*nodes)) {
+        auto node = parse_node(row);
+        // A node stands in a row for each of its partitions.
+        if (node && known.insert(node->name).second)
+            view.nodes.push_back(std::move(*node));
+    }
+    int smallest = 16;
+    for (const ClusterNode& node : view.nodes)
+        smallest = std::min(smallest, std::max(node.threads, 1));
+    view.task_threads = options_.threads > 0 ? options_.threads : smallest;
+    for (const ClusterNode& node : view.nodes) {
+        if (options_.resumes_nodes && node.reason == "drained: Duplicate jobid") {
+            spdlog::warn("node {} is resumed: it was drained for a \"Duplicate jobid\"", node.name);
+            static_cast<void>(run({"scontrol", "update", "nodename=" + node.name, "state=resume"}));
+        }
+    }
+    return view;
+}
+
+void Slurm::cancel(const std::string& key) {
+    if (const auto said = run({"scancel", "--me", "--name=" + key}); !said)
+        spdlog::warn("{}", said.error());
+}
+
+void Slurm::cancel(std::span<const ClusterTask> tasks) {
+    constexpr std::size_t at_once = 1000;
+    for (std::size_t first = 0; first < tasks.size(); first += at_once) {
+        // By name as well: the job's number may be another's by now.
+        std::vector<std::string> command = {"scancel", "--me", "--name=" + tasks[first].key};
+        for (const ClusterTask& task : tasks.subspan(first, std::min(at_once, tasks.size() - first)))
+            command.push_back(name_of(task));
+        if (const auto said = run(command); !said)
+            spdlog::warn("{}", said.error());
+    }
+}
+
+void Slurm::nudge(std::span<const ClusterTask> tasks) {
+    for (const ClusterTask& task : tasks) {
+        const auto said = task.state == TaskState::held
+                              ? run({"scontrol", "release", name_of(task)})
+                              : run({"scontrol", "update", "jobid=" + name_of(task), "StartTime=now"});
+        if (!said)
+            spdlog::warn("{}", said.error());
+    }
+}
+
+}  // namespace drtv::executor

@@ -1,0 +1,34 @@
+// What Slurm's commands print, and what its shell reads.
+#pragma once
+
+#include "bakerd/executor/cluster.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace drtv::executor {
+
+// A row of squeue, `Name|ArrayJobID|ArrayTaskID|State|Reason|BatchHost|exit_code|`; nothing where it is none.
+[[nodiscard]] std::optional<ClusterTask> parse_task(std::string_view row);
+
+// A row of sinfo, `%N|%c|%m|%T|%E`; likewise.
+[[nodiscard]] std::optional<ClusterNode> parse_node(std::string_view row);
+
+// The value of "Name = value" in what scontrol shows.
+[[nodiscard]] std::optional<std::size_t> configured(std::string_view text, std::string_view name);
+
+// A job's number, "<job>" or "<job>;<cluster>".
+[[nodiscard]] bool is_job_number(std::string_view text);
+
+// A refusal, as Slurm words it (its error numbers' sentences), that fewer tasks may pass.
+[[nodiscard]] bool is_too_large(std::string_view sentence);
+
+[[nodiscard]] std::vector<std::string_view> lines_of(std::string_view text);
+
+// For a shell.
+[[nodiscard]] std::string quote(const std::string& argument);
+
+}  // namespace drtv::executor

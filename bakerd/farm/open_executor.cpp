@@ -1,0 +1,32 @@
+#include "bakerd/farm/open_executor.h"
+
+#include "bakerd/executor/cluster_executor.h"
+#include "bakerd/executor/local_executor.h"
+
+#include <utility>
+
+namespace drtv::farm {
+
+store::Result<std::unique_ptr<executor::Executor>> open_executor(const ExecutorOptions& options,
+                                                                 const std::string& store_folder,
+                                                                 const std::string& owner,
+                                                                 store::BlobStore& blobs,
+                                                                 executor::Executor::Callbacks callbacks) {
+    executor::LocalExecutor::Options local{.worker_command = options.worker_command,
+                                           .threads = options.threads};
+    if (!options.slurm)
+        return std::make_unique<executor::LocalExecutor>(std::move(local), std::move(callbacks));
+    executor::DispatchOptions dispatch;
+    dispatch.store_folder = store_folder;
+    dispatch.owner = owner;
+    dispatch.task_command = options.task_command;
+    dispatch.differs_status = options.differs_status;
+    dispatch.batch_s = options.batch_s;
+    return executor::ClusterExecutor::open(std::make_unique<executor::Slurm>(*options.slurm),
+                                           std::move(dispatch),
+                                           std::move(local),
+                                           blobs,
+                                           std::move(callbacks));
+}
+
+}  // namespace drtv::farm
