@@ -1,4 +1,5 @@
 // bakerd: parse, wire, run.
+#include "bakerd/doctor.h"
 #include "bakerd/picture/render_request.h"
 #include "bakerd/serve.h"
 #include "bakerd/trace/device.h"
@@ -26,6 +27,7 @@ struct Arguments {
     worker::Options worker;
     worker::BatchOptions batch;
     picture::RenderRequest render;
+    DoctorOptions doctor;
     // The command. Set when the line has been parsed.
     std::function<cli::Result<cli::ExitCode>()> run;
 };
@@ -69,6 +71,13 @@ void add_task(CLI::App& app, Arguments& to) {
     });
 }
 
+void add_doctor(CLI::App& app, Arguments& to) {
+    CLI::App* command = app.add_subcommand("doctor", "Say what a node of a cluster lacks to bake");
+    command->add_option("--store", to.doctor.store, "The daemon's --store")->required();
+    command->add_option("--slurm-partition", to.doctor.partition, "The daemon's --slurm-partition");
+    command->callback([&to] { to.run = [&to] { return examine_node(to.doctor); }; });
+}
+
 void add_render(CLI::App& app, Arguments& to) {
     CLI::App* command = app.add_subcommand("render", "Picture of a map in the light of its sector files");
     picture::add_render(*command, to.render);
@@ -103,6 +112,7 @@ int main(int argc, char** argv) {
     add_worker(app, arguments);
     add_task(app, arguments);
     add_render(app, arguments);
+    add_doctor(app, arguments);
     if (const auto ended = cli::parse(app, argc, argv))
         return *ended;
     return cli::end_program(arguments.run());

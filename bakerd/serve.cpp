@@ -1,6 +1,7 @@
 #include "bakerd/serve.h"
 
 #include "bakerd/bake/settings_key.h"
+#include "bakerd/executor/run_command.h"
 #include "bakerd/trace/device.h"
 #include "format/cli/option_checks.h"
 
@@ -85,6 +86,12 @@ cli::Result<cli::ExitCode> serve(const ServeOptions& options) {
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     if (options.executor == "slurm" && options.store.empty())
         return cli::fail(cli::exit_usage, "--executor slurm needs --store, a folder that all nodes see");
+    if (options.executor == "slurm") {
+        if (const auto found = executor::run_command({"sbatch", "--version"}, std::chrono::seconds(20));
+            !found)
+            return cli::fail(cli::exit_unreadable,
+                             fmt::format("--executor slurm needs Slurm's commands: {}", found.error()));
+    }
     farm::Farm::Options farm_options;
     farm_options.data_folder = options.data;
     farm_options.store_folder = options.store;

@@ -29,6 +29,8 @@ std::string progress_text(const v1::Job& job) {
         const std::string left = duration_text(job.seconds_left());
         text += fmt::format("  {:.2f} Mrays/s  {} left", million_rays, left);
     }
+    if (job.has_cluster())
+        text += "  " + cluster_text(job.cluster());
     if (job.sectors_failed() > 0)
         text += fmt::format("  {} failed", job.sectors_failed());
     return text;
@@ -54,9 +56,16 @@ grpc::Status follow(ServerConnection& connection,
     const InterruptGuard guard(context, left);
     const auto reader = connection.jobs->WatchJob(&context, request);
     v1::Job job;
+    std::string told_trouble;
     while (reader->Read(&job)) {
         last = job;
         heard = true;
+        const std::string& trouble = job.cluster().trouble();
+        if (!trouble.empty() && trouble != told_trouble && !options.quiet) {
+            progress.clear();
+            cli::note("the cluster: " + trouble);
+        }
+        told_trouble = trouble;
         if (options.progressed)
             options.progressed(job);
         if (options.quiet || has_ended(job))

@@ -87,6 +87,7 @@ cli::Result<v1::Job> wanted_job(const SubmitOptions& options) {
     }
     v1::Job job;
     job.mutable_settings()->set_preset(options.preset);
+    job.set_priority(options.priority == "nightly" ? v1::Job::NIGHTLY : v1::Job::INTERACTIVE);
     std::set<std::string> keys;
     for (const std::string& setting : options.settings) {
         const auto key = set_setting(job, setting);

@@ -14,8 +14,9 @@ struct SubmitOptions {
     std::vector<std::string> maps;  // glTF files, or folders of them
     std::string region;             // "X0,Y0,X1,Y1", or empty
     std::string preset{settings::default_preset};
-    std::vector<std::string> settings;  // "key=value"
-    bool exact = false;                 // tolerance=0
+    std::vector<std::string> settings;    // "key=value"
+    bool exact = false;                   // tolerance=0
+    std::string priority{"interactive"};  // or "nightly"
     bool wait = false;
     bool yes = false;         // a large job needs no question
     std::string pull_folder;  // empty: pull nothing

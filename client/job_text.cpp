@@ -94,6 +94,16 @@ std::string json_line(const Job& job, const JobReport* report) {
     json["created"] = job.create_time().seconds();
     json["ended"] = job.end_time().seconds();
     json["seconds"] = seconds_of(job);
+    json["priority"] = job.priority() == Job::NIGHTLY ? "nightly" : "interactive";
+    if (job.has_cluster()) {
+        const auto& cluster = job.cluster();
+        json["cluster"] = {{"nodes", cluster.nodes()},
+                           {"nodes_up", cluster.nodes_up()},
+                           {"tasks_waiting", cluster.tasks_waiting()},
+                           {"tasks_running", cluster.tasks_running()},
+                           {"tasks_lost", cluster.tasks_lost()},
+                           {"trouble", cluster.trouble()}};
+    }
     add_settings(job, json);
     if (job.has_region()) {
         const auto& region = job.region();
@@ -120,6 +130,17 @@ std::string reused_text(const Job& job) {
     return text;
 }
 
+std::string cluster_text(const v1::ClusterState& cluster) {
+    std::string text = fmt::format("{} of {} nodes, {} at work, {} in the queue",
+                                   cluster.nodes_up(),
+                                   cluster.nodes(),
+                                   counted(cluster.tasks_running(), "task", "tasks"),
+                                   with_thousands(cluster.tasks_waiting()));
+    if (cluster.tasks_lost() > 0)
+        text += fmt::format(", {} lost", with_thousands(cluster.tasks_lost()));
+    return text;
+}
+
 std::string one_line(const Job& job) {
     std::string text = fmt::format("job {} {}: {} of {} sectors done",
                                    job_number(job),
@@ -130,6 +151,8 @@ std::string one_line(const Job& job) {
     if (job.sectors_failed() > 0)
         text += fmt::format(", {} failed", with_thousands(job.sectors_failed()));
     text += ", " + counted(job.probes(), "probe", "probes");
+    if (job.has_cluster())
+        text += "; " + cluster_text(job.cluster());
     if (job.has_end_time())
         text += fmt::format(", {}", duration_text(seconds_of(job)));
     return text;

@@ -22,6 +22,9 @@ using v1::Job;
 [[nodiscard]] std::string json_line(const Job& job, const JobReport* report = nullptr);
 [[nodiscard]] std::string one_line(const Job& job);  // "job 12 succeeded: 140 of 140 sectors ..."
 
+// "3 of 4 nodes, 12 tasks at work, 30 in the queue, 2 lost".
+[[nodiscard]] std::string cluster_text(const v1::ClusterState& cluster);
+
 // ", 12 of them from the cache, 3 nearly the same (at most 0.1 % off)"; empty when all are baked.
 [[nodiscard]] std::string reused_text(const Job& job);
 

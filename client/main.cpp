@@ -1,6 +1,7 @@
 // bake: parse, connect, run.
 #include "client/command_cache.h"
 #include "client/command_list.h"
+#include "client/command_logs.h"
 #include "client/command_plan.h"
 #include "client/command_pull.h"
 #include "client/command_report.h"
@@ -32,6 +33,7 @@ struct Arguments {
     SubmitOptions submit;
     PlanPicture picture;
     std::string job;
+    std::string sector;  // "I,J"
     std::string folder;
     bool clear = false;
     bool warnings_as_errors = false;
@@ -102,6 +104,12 @@ void add_map_commands(CLI::App& app, Arguments& to) {
                      "With --png: a picture to lie under the plan: what bakerd render --top makes")
         ->needs(png)
         ->type_name("FILE.png");
+    submit
+        ->add_option("--priority",
+                     to.submit.priority,
+                     "interactive: somebody waits; nightly: after all that are interactive")
+        ->check(cli::one_of({"interactive", "nightly"}))
+        ->capture_default_str();
     submit->add_flag("--yes", to.submit.yes, "Bake more than 2,500 sectors without a question");
     submit->add_flag("--wait", to.submit.wait, "Show progress until the job ends");
     submit->add_option("--pull", to.submit.pull_folder, "Wait, then write the sector files to this folder");
@@ -139,12 +147,14 @@ void add_job_commands(CLI::App& app, Arguments& to) {
         "report", "A job in numbers: time by stage, probes dropped, error reached, warnings by object");
     CLI::App* retry = app.add_subcommand("retry", "Bake the sectors again that have failed");
     CLI::App* pull = app.add_subcommand("pull", "Write a job's finished sector files to a folder");
-    for (CLI::App* command : {status, watch, wait, report, cancel, retry, pull})
+    CLI::App* logs = app.add_subcommand("logs", "What a cluster's task printed while it baked a sector");
+    for (CLI::App* command : {status, watch, wait, report, cancel, retry, pull, logs})
         command->add_option("JOB", to.job, "Number of the job")->required()->check(job_number_check());
     for (CLI::App* command : {watch, wait})
         add_timeout(*command, to.submit);
     pull->add_option("--out", to.folder, "Folder for the files; made when missing")->required();
     pull->add_flag("--replace", to.submit.replace, "Take a folder that holds sectors of another map");
+    logs->add_option("SECTOR", to.sector, "The sector, as I,J")->required();
     when_called(*list, to, run_list);
     when_called(*status, to, [&to](ServerConnection& connection) { return run_status(connection, to.job); });
     when_called(
@@ -153,6 +163,8 @@ void add_job_commands(CLI::App& app, Arguments& to) {
         return run_watch(connection, to.job, {.quiet = true});
     });
     when_called(*report, to, [&to](ServerConnection& connection) { return run_report(connection, to.job); });
+    when_called(
+        *logs, to, [&to](ServerConnection& connection) { return run_logs(connection, to.job, to.sector); });
     when_called(*retry, to, [&to](ServerConnection& connection) { return run_retry(connection, to.job); });
     when_called(*cancel, to, [&to](ServerConnection& connection) { return run_cancel(connection, to.job); });
     when_called(*pull, to, [&to](ServerConnection& connection) {

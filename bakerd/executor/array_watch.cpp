@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace drtv::executor {
 namespace {
@@ -16,7 +17,7 @@ ArrayWatch::ArrayWatch(const std::vector<std::vector<Digest>>& batches, Patience
     : patience_(patience) {
     for (const std::vector<Digest>& batch : batches) {
         Task& task = tasks_.emplace_back();
-        task.unanswered = {batch.begin(), batch.end()};
+        task.unanswered = batch;
         task.sectors = batch.size();
         task.heard = now;
     }
@@ -28,7 +29,7 @@ std::chrono::milliseconds ArrayWatch::patience_for(const ClusterTask& ended) con
 }
 
 void ArrayWatch::settle(std::size_t task, const Digest& answer) {
-    tasks_.at(task).unanswered.erase(answer);
+    std::erase(tasks_.at(task).unanswered, answer);
 }
 
 void ArrayWatch::hear(std::span<const ClusterTask> tasks, Time now) {
@@ -65,10 +66,8 @@ std::vector<EndedTask> ArrayWatch::take_ended(Time now) {
         if (task.ended ? now - *task.ended < patience_for(*task.last) : now - task.heard < patience_.silence)
             continue;
         task.is_taken = true;
-        ended.push_back({{task.unanswered.begin(), task.unanswered.end()},
-                         task.sectors == 1,
-                         task.ended ? task.last : std::nullopt});
-        task.unanswered.clear();
+        ended.push_back(
+            {std::exchange(task.unanswered, {}), task.sectors == 1, task.ended ? task.last : std::nullopt});
     }
     return ended;
 }

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
-#include <set>
 #include <span>
 #include <vector>
 
@@ -59,7 +58,7 @@ class ArrayWatch {
 
   private:
     struct Task {
-        std::set<Digest> unanswered;
+        std::vector<Digest> unanswered;  // in the order of baking
         std::size_t sectors = 0;
         Time heard;                 // last time that it was alive
         std::optional<Time> ended;  // when the queue first said so

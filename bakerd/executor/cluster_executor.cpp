@@ -48,6 +48,11 @@ void ClusterExecutor::wake() {
     changed_.notify_all();
 }
 
+std::optional<ClusterState> ClusterExecutor::cluster() const {
+    const std::lock_guard lock(mutex_);
+    return state_;
+}
+
 std::future<Reply<worker::MapSummary>> ClusterExecutor::inspect(worker::InspectRequest question) {
     return local_.inspect(std::move(question));
 }
@@ -64,7 +69,9 @@ void ClusterExecutor::run() {
         woken_ = false;
         lock.unlock();
         const Dispatcher::Time due = dispatcher_.step();
+        ClusterState state = dispatcher_.state();
         lock.lock();
+        state_ = std::move(state);
         changed_.wait_until(lock, due, [this] { return woken_ || stopping_; });
     }
 }

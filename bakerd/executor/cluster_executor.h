@@ -12,6 +12,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 namespace drtv::executor {
@@ -32,6 +33,7 @@ class ClusterExecutor final : public Executor {
     ClusterExecutor& operator=(const ClusterExecutor&) = delete;
 
     void wake() override;
+    [[nodiscard]] std::optional<ClusterState> cluster() const override;
     [[nodiscard]] std::future<Reply<worker::MapSummary>> inspect(worker::InspectRequest question) override;
     [[nodiscard]] std::future<Reply<worker::Assessments>> assess(worker::AssessRequest question) override;
     void stop(std::chrono::milliseconds patience) override;
@@ -44,10 +46,11 @@ class ClusterExecutor final : public Executor {
     Dispatcher dispatcher_;  // the thread's only
     LocalExecutor local_;
 
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable changed_;
     bool woken_ = false;     // guarded by mutex_
     bool stopping_ = false;  // guarded by mutex_
+    ClusterState state_;     // guarded by mutex_; after the last step
 
     std::thread thread_;
 };

@@ -1,6 +1,7 @@
 // The dispatcher's arrays and what the queue tells of them.
 #include "bakerd/executor/dispatcher.h"
 #include "bakerd/store/durable_file.h"
+#include "bakerd/store/text_bytes.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -23,7 +24,7 @@ std::string last_words(const std::string& log) {
     while (text.ends_with('\n'))
         text.remove_suffix(1);
     const std::size_t begin = text.rfind('\n');
-    return std::string((begin == text.npos ? text : text.substr(begin + 1)).substr(0, 300));
+    return store::as_utf8((begin == text.npos ? text : text.substr(begin + 1)).substr(0, 300));
 }
 
 std::string join(const std::string& what, const std::string& words) {
@@ -64,6 +65,7 @@ void Dispatcher::ask_queue() {
         keys.push_back(key);
     auto tasks = cluster_->list(keys);
     next_queue_ = now() + options_.queue_every;
+    list_trouble_ = tasks ? "" : tasks.error();
     if (!tasks) {
         spdlog::warn("{}", tasks.error());
         return;
@@ -86,6 +88,7 @@ void Dispatcher::judge(const std::string& key, Array& array) {
     const std::vector<EndedTask> ended = array.watch.take_ended(now());
     for (const EndedTask& task : ended)
         try_again(array, task);
+    lost_ += ended.size();
     if (!ended.empty())
         spdlog::info("array {}: {} tasks ended with sectors to bake: {}",
                      key,
@@ -137,7 +140,7 @@ void Dispatcher::try_again(const Array& array, const EndedTask& ended) {
                    ended.last ? ended.last->node : "",
                    log);
         else
-            fresh_.insert(key);
+            fresh_.push_back(key);
     }
 }
 

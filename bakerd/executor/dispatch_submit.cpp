@@ -25,6 +25,7 @@ std::string new_key() {
 
 void Dispatcher::view_cluster() {
     auto view = cluster_->view();
+    view_trouble_ = view ? "" : view.error();
     next_view_ = now() + (view ? options_.cluster_every : options_.queue_every);
     if (!view) {
         spdlog::warn("{}", view.error());
@@ -32,6 +33,32 @@ void Dispatcher::view_cluster() {
     }
     view_ = std::move(*view);
     std::erase_if(excluded_, [this](const auto& node) { return node.second.until <= now(); });
+}
+
+ClusterState Dispatcher::state() const {
+    ClusterState state;
+    for (const auto& [key, array] : arrays_) {
+        for (const ClusterTask& task : array.watch.alive())
+            ++(task.state == TaskState::running ? state.tasks_running : state.tasks_waiting);
+    }
+    state.tasks_lost = lost_;
+    for (const std::string& trouble : {submit_trouble_, list_trouble_, view_trouble_}) {
+        if (state.trouble.empty())
+            state.trouble = trouble;
+    }
+    if (!view_)
+        return state;
+    state.nodes = view_->nodes.size();
+    for (const ClusterNode& node : view_->nodes) {
+        state.nodes_up += static_cast<std::size_t>(may_bake(node));
+        if (may_bake(node) || !state.trouble.empty())
+            continue;
+        const auto excluded = excluded_.find(node.name);
+        state.trouble = fmt::format("node {} cannot bake: {}",
+                                    node.name,
+                                    excluded == excluded_.end() ? node.reason : excluded->second.why);
+    }
+    return state;
 }
 
 bool Dispatcher::may_bake(const ClusterNode& node) const {
@@ -173,6 +200,7 @@ void Dispatcher::submit(Priority priority) {
     arrays_.emplace(
         array.key,
         Array{priority, std::move(batches), std::move(watch), array.memory_bytes, taken.has_value()});
+    submit_trouble_ = taken ? "" : taken.error().sentence;
     if (taken) {
         refusals_ = 0;
         max_tasks_ = 2 * max_tasks_ >= view_->max_tasks ? 0 : 2 * max_tasks_;

@@ -1,9 +1,13 @@
 #include "bakerd/executor/dispatcher.h"
 
+#include "bakerd/store/owner.h"
+#include "bakerd/worker/build_id.h"
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace drtv::executor {
 namespace {
@@ -29,6 +33,11 @@ store::Result<Dispatcher> Dispatcher::open(DispatchOptions options,
     auto answers = worker::Answers::open(options.store_folder);
     if (!answers)
         return tl::unexpected(answers.error());
+    // For who looks from a node (bakerd doctor).
+    if (auto marked =
+            store::write_mark(options.store_folder + "/build", worker::text_of(worker::this_build()));
+        !marked)
+        return tl::unexpected(marked.error());
     Dispatcher dispatcher(
         std::move(options), cluster, blobs, std::move(callbacks), std::move(*folder), std::move(*answers));
     dispatcher.load_arrays();
@@ -90,7 +99,7 @@ void Dispatcher::take_up(SectorTask task) {
     if (!is_new) {
         // Two jobs want the same, and one of them was opened again.
         if (!sector.place)
-            fresh_.insert(key);
+            fresh_.push_back(key);
         return;
     }
     sector.request = std::move(task.request);
@@ -99,7 +108,7 @@ void Dispatcher::take_up(SectorTask task) {
     sector.seconds = task.seconds;
     const auto known = left_behind_.find(key);
     if (known == left_behind_.end()) {
-        fresh_.insert(key);
+        fresh_.push_back(key);
         return;
     }
     sector.place = std::move(known->second);
@@ -108,23 +117,20 @@ void Dispatcher::take_up(SectorTask task) {
 
 void Dispatcher::collect_answers() {
     next_answers_ = now() + options_.answers_every;
-    std::set<Digest> asked = fresh_;
+    const std::vector<Digest> fresh = std::exchange(fresh_, {});
+    std::set<Digest> asked(fresh.begin(), fresh.end());
     for (const auto& [key, sector] : sectors_) {
         if (sector.place)
-            asked.insert(asked.end(), key);
+            asked.insert(key);
     }
     for (const Digest& key : answers_.among(asked)) {
-        fresh_.erase(key);
-        if (const auto answer = answers_.read(key))
+        if (const auto answer = answers_.read(key); answer && sectors_.contains(key))
             deliver(key, *answer);
-        else
-            fresh_.insert(key);
     }
-    for (const Digest& key : fresh_) {
-        const Sector& sector = sectors_.at(key);
-        ready_[index_of(sector.priority)].push_back(key);
+    for (const Digest& key : fresh) {
+        if (const auto left = sectors_.find(key); left != sectors_.end() && !left->second.place)
+            ready_[index_of(left->second.priority)].push_back(key);
     }
-    fresh_.clear();
 }
 
 void Dispatcher::deliver(const Digest& key, const worker::TaskAnswer& answer) {
@@ -139,7 +145,7 @@ void Dispatcher::deliver(const Digest& key, const worker::TaskAnswer& answer) {
         answers_.remove(key);
         settle(key, sector);
         if (++sector.losses < max_losses)
-            fresh_.insert(key);
+            fresh_.push_back(key);
         else
             finish(key,
                    tl::unexpected(
@@ -160,7 +166,6 @@ void Dispatcher::finish(const Digest& key,
         spent_.emplace_back(key, now());
     settle(key, sector);
     sectors_.erase(found);
-    fresh_.erase(key);
     for (const std::uint64_t id : sector.ids)
         callbacks_.finished({id, sector.failures, reply, node, log});
 }
@@ -182,7 +187,6 @@ void Dispatcher::give_up_unwanted() {
             continue;
         }
         settle(key, sector);
-        fresh_.erase(key);
         entry = sectors_.erase(entry);
     }
 }

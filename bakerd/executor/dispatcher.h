@@ -58,6 +58,9 @@ class Dispatcher {
     // Does what is due, and says when something will be again.
     [[nodiscard]] Time step();
 
+    // As the last step left it.
+    [[nodiscard]] ClusterState state() const;
+
   private:
     // A task of an array.
     struct Place {
@@ -131,8 +134,8 @@ class Dispatcher {
     ArrayFolder folder_;
     worker::Answers answers_;
 
-    std::map<Digest, Sector> sectors_;            // taken up, by the key of the answer
-    std::set<Digest> fresh_;                      // of these, for which no answer has been looked for
+    std::map<Digest, Sector> sectors_;  // taken up, by the key of the answer
+    std::vector<Digest> fresh_;  // of these, for which no answer has been looked for, in the order of baking
     std::array<std::deque<Digest>, 2> ready_;     // by priority, in the order of baking
     std::array<bool, 2> is_dry_{};                // nothing waits behind what is ready, by priority
     std::map<std::string, Array> arrays_;         // that are open
@@ -143,6 +146,9 @@ class Dispatcher {
     std::optional<ClusterView> view_;
     std::size_t max_tasks_ = 0;  // of the next array; 0: what the cluster allows
     int refusals_ = 0;           // in a row
+    std::size_t lost_ = 0;       // tasks
+    // What the cluster could not do when it was asked last; empty: it could.
+    std::string list_trouble_, view_trouble_, submit_trouble_;
     Time next_answers_, next_queue_, next_view_, next_submit_;
 };
 

@@ -5,6 +5,7 @@
 #include "bakerd/worker/requests.h"
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <future>
@@ -34,6 +35,18 @@ struct SectorEnd {
     std::string log{};  // file with what it printed, within the store
 };
 
+// What a cluster does for this executor.
+struct ClusterState {
+    std::size_t nodes = 0;
+    std::size_t nodes_up = 0;  // of these, that may bake
+    std::size_t tasks_waiting = 0;
+    std::size_t tasks_running = 0;
+    std::size_t tasks_lost = 0;  // so far: that ended before they had baked all of their sectors
+    std::string trouble;         // one sentence; empty where it does what it is asked
+
+    bool operator==(const ClusterState&) const = default;
+};
+
 // A request is tried this often; two retries after the first failure.
 inline constexpr int max_attempts = 3;
 
@@ -53,6 +66,9 @@ class Executor {
     // There may be a sector to bake behind `next`, which the executor asks whenever it has room; or fewer are
     // wanted than before.
     virtual void wake() = 0;
+
+    // Nothing where sectors are baked on this machine.
+    [[nodiscard]] virtual std::optional<ClusterState> cluster() const { return std::nullopt; }
 
     // Answered before any waiting sector, on this machine.
     [[nodiscard]] virtual std::future<Reply<worker::MapSummary>> inspect(worker::InspectRequest question) = 0;

@@ -1,6 +1,7 @@
 #include "bakerd/executor/run_command.h"
 
 #include "bakerd/executor/spawn.h"
+#include "bakerd/store/text_bytes.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -113,7 +114,7 @@ tl::expected<std::string, std::string> run_command(const std::vector<std::string
     }
     if (*status == 0)
         return std::move(outputs[0].text);
-    const std::string why = last_line(outputs[1].text);
+    const std::string why = store::as_utf8(last_line(outputs[1].text));
     return tl::unexpected(
         fmt::format("{} {}{}{}", command[0], describe_exit(*status), why.empty() ? "" : ": ", why));
 }

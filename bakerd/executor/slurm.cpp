@@ -2,6 +2,7 @@
 
 #include "bakerd/executor/run_command.h"
 #include "bakerd/executor/slurm_text.h"
+#include "bakerd/store/text_bytes.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -89,7 +90,8 @@ tl::expected<std::vector<ClusterTask>, std::string> Slurm::list(std::span<const 
         auto task = parse_task(row);
         // Half of a list would look as if the other tasks were gone.
         if (!task)
-            return Failure(fmt::format("squeue gave a row that is none: {}", row.substr(0, 80)));
+            return Failure(
+                fmt::format("squeue gave a row that is none: {}", store::as_utf8(row.substr(0, 80))));
         tasks.push_back(std::move(*task));
     }
     return tasks;

@@ -139,8 +139,10 @@ Result<JobView> Farm::create_planned(const JobRequest& request, const std::funct
 Result<JobView> Farm::with_warnings(std::optional<JobView> view, std::int64_t id) {
     if (!view)
         return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
-    if (view->row.state == JobState::running)
+    if (view->row.state == JobState::running) {
+        view->cluster = executor_->cluster();
         return std::move(*view);
+    }
     auto warnings = database_->read(
         [&](Connection& connection) { return warnings_of_job(connection, id, worker::max_warnings); });
     if (!warnings)
@@ -214,6 +216,13 @@ Result<std::vector<JobSectorView>> Farm::list_sectors(std::int64_t id,
 Result<std::vector<JobSectorView>> Farm::get_sectors(std::int64_t id,
                                                      const std::vector<map::SectorCoordinate>& sectors) {
     return sector_views(*database_, book_, id, sectors);
+}
+
+Result<SectorLog> Farm::sector_log(std::int64_t id, map::SectorCoordinate sector) {
+    const auto views = get_sectors(id, {sector});
+    if (!views)
+        return tl::unexpected(views.error());
+    return read_sector_log(options_.store_folder, id, views->front());
 }
 
 Result<CacheView> Farm::cache() {

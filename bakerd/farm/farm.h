@@ -9,6 +9,7 @@
 #include "bakerd/farm/open_executor.h"
 #include "bakerd/farm/plan.h"
 #include "bakerd/farm/records.h"
+#include "bakerd/farm/sector_log.h"
 #include "bakerd/farm/sector_views.h"
 #include "bakerd/store/blob_store.h"
 #include "bakerd/store/error.h"
@@ -88,6 +89,9 @@ class Farm {
     // In the order asked for; fails when one is not part of the job.
     [[nodiscard]] store::Result<std::vector<JobSectorView>> get_sectors(
         std::int64_t job, const std::vector<map::SectorCoordinate>& sectors);
+
+    // What a cluster's task printed of it.
+    [[nodiscard]] store::Result<SectorLog> sector_log(std::int64_t job, map::SectorCoordinate sector);
 
     [[nodiscard]] store::Result<CacheView> cache();
     // Removes all results that no running job holds; gives what is left.

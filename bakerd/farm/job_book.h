@@ -30,6 +30,7 @@ struct JobView {
     bool waiting = false;               // none of its sectors has been taken up yet
     std::uint64_t version = 0;          // grows with each change
     std::vector<std::string> warnings;  // of records that could not be used; of the database; the first few
+    std::optional<executor::ClusterState> cluster;  // of a running job, where there is one
 };
 
 // What makes two jobs want the same bake.

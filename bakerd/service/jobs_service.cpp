@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
 #include <thread>
 
 namespace drtv::service {
@@ -38,6 +39,15 @@ void set_time(std::int64_t unix_ms, google::protobuf::Timestamp& out) {
     out.set_nanos(static_cast<std::int32_t>(unix_ms % 1000) * 1'000'000);
 }
 
+void fill_cluster(const executor::ClusterState& state, v1::ClusterState& out) {
+    out.set_nodes(static_cast<std::int32_t>(state.nodes));
+    out.set_nodes_up(static_cast<std::int32_t>(state.nodes_up));
+    out.set_tasks_waiting(static_cast<std::int64_t>(state.tasks_waiting));
+    out.set_tasks_running(static_cast<std::int64_t>(state.tasks_running));
+    out.set_tasks_lost(static_cast<std::int64_t>(state.tasks_lost));
+    out.set_trouble(state.trouble);
+}
+
 void fill(const farm::JobView& view, v1::Job& out) {
     const farm::JobRow& row = view.row;
     out.set_name(job_name(row.id));
@@ -67,6 +77,9 @@ void fill(const farm::JobView& view, v1::Job& out) {
         set_time(row.ended_ms, *out.mutable_end_time());
     for (const std::string& warning : view.warnings)
         out.add_warnings(warning);
+    out.set_priority(row.priority == executor::Priority::nightly ? v1::Job::NIGHTLY : v1::Job::INTERACTIVE);
+    if (view.cluster)
+        fill_cluster(*view.cluster, *out.mutable_cluster());
 }
 
 v1::PlannedSector::Verdict to_proto(reuse::Verdict verdict) {
@@ -92,6 +105,8 @@ store::Result<farm::JobRequest> wanted_job(const v1::Job& job) {
     if (!settings)
         return store::fail(store::ErrorCode::invalid_argument, settings.error());
     wanted.settings = *settings;
+    wanted.priority =
+        job.priority() == v1::Job::NIGHTLY ? executor::Priority::nightly : executor::Priority::interactive;
     if (job.has_region())
         wanted.region =
             farm::JobRegion{job.region().x0(), job.region().y0(), job.region().x1(), job.region().y1()};
@@ -213,6 +228,7 @@ grpc::Status JobsService::WatchJob(grpc::ServerContext* context,
     if (seat.number > max_watchers)
         return failed(grpc::StatusCode::RESOURCE_EXHAUSTED,
                       fmt::format("{} clients are watching already", max_watchers));
+    std::optional<executor::ClusterState> cluster;
     for (std::uint64_t seen = 0;;) {
         const auto view = farm_.wait_for_change(*id, seen, watch_patience);
         if (!view)
@@ -221,8 +237,9 @@ grpc::Status JobsService::WatchJob(grpc::ServerContext* context,
             return grpc::Status::CANCELLED;
         if (stopping_)
             return failed(grpc::StatusCode::UNAVAILABLE, "the server is stopping");
-        if (view->version == seen)
+        if (view->version == seen && view->cluster == cluster)
             continue;
+        cluster = view->cluster;
         seen = view->version;
         v1::Job job;
         fill(*view, job);

@@ -67,6 +67,7 @@ void fill_sector(const farm::JobSectorView& view, v1::Sector& out) {
     out.set_failed_attempts(row.failed_attempts);
     out.set_error(row.error);
     out.set_cause(row.cause);
+    out.set_node(row.node);
     if (row.state != farm::SectorState::done)
         return;
     out.set_sha256(to_hex(row.file));

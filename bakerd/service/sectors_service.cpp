@@ -2,6 +2,7 @@
 #include "bakerd/service/names.h"
 #include "bakerd/service/sector_message.h"
 #include "bakerd/service/services.h"
+#include "bakerd/store/text_bytes.h"
 
 #include <fmt/format.h>
 
@@ -89,6 +90,23 @@ grpc::Status SectorsService::PullSectors(grpc::ServerContext*,
         }
     }
     return sender.finish();
+}
+
+// Lines are whatever a task printed; a message holds UTF-8 only.
+grpc::Status SectorsService::GetSectorLog(grpc::ServerContext*,
+                                          const v1::GetSectorLogRequest* request,
+                                          v1::SectorLog* response) {
+    const auto job = job_from_name(request->job());
+    if (!job)
+        return to_status(job.error());
+    const auto log = farm_.sector_log(*job, {request->sector().i(), request->sector().j()});
+    if (!log)
+        return to_status(log.error());
+    response->set_node(log->node);
+    response->set_file(log->file);
+    for (const std::string& line : log->lines)
+        response->add_lines(store::as_utf8(line));
+    return grpc::Status::OK;
 }
 
 }  // namespace drtv::service

@@ -85,6 +85,9 @@ class SectorsService final : public v1::Sectors::Service {
     grpc::Status PullSectors(grpc::ServerContext* context,
                              const v1::PullSectorsRequest* request,
                              grpc::ServerWriter<v1::PullSectorsResponse>* writer) override;
+    grpc::Status GetSectorLog(grpc::ServerContext* context,
+                              const v1::GetSectorLogRequest* request,
+                              v1::SectorLog* response) override;
 
   private:
     farm::Farm& farm_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace drtv::worker {
@@ -16,6 +17,10 @@ struct BuildId {
 };
 
 [[nodiscard]] BuildId this_build();
+
+// One line, and back; nothing where the line is none.
+[[nodiscard]] std::string text_of(const BuildId& build);
+[[nodiscard]] std::optional<BuildId> build_of(const std::string& text);
 
 // Empty where a task of this build may work for one of `wanted`; else a sentence.
 [[nodiscard]] std::string difference(const BuildId& wanted, const BuildId& here);

@@ -845,6 +845,23 @@ class Verdicts(FarmTest):
         done = self.farm.bake(daemon, "wait", "2", "--timeout", "0.3")
         self.assertEqual(done.returncode, TIMEOUT, done.stderr)
 
+    def test_an_interactive_job_goes_before_a_nightly_one(self):
+        daemon = self.farm.daemon("data", "--threads", "1")
+        self.farm.bake(daemon, "submit", self.island(), "--priority", "nightly")
+        self.assertEqual(self.farm.job(daemon, 1)["priority"], "nightly")
+        path = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        done = self.farm.bake(daemon, "--json", "submit", path, *FEW_RAYS, "--wait")
+        self.assertEqual(last_object(done)["state"], "succeeded", done.stderr)
+        self.assertEqual(last_object(done)["priority"], "interactive")
+        self.assertIn(self.farm.job(daemon, 1)["state"], ("waiting", "running"))
+        # Here sectors have no log of a task.
+        done = self.farm.bake(daemon, "logs", "2", "0,0")
+        self.assertEqual(done.returncode, USAGE)
+        self.assertIn("the daemon's own log", done.stderr)
+        for sector in ("0", "0,0,0", "x,y", "0, 0", "99999999999,1"):
+            done = self.farm.bake(daemon, "logs", "2", sector)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (USAGE, 1), done.stderr)
+
     def test_a_job_behind_another_waits(self):
         daemon = self.farm.daemon("data", "--threads", "1")
         self.farm.bake(daemon, "submit", self.island())

@@ -140,6 +140,11 @@ TEST_F(DispatcherTest, SectorsBecomeBatchesAndTheirAnswersEnds) {
     EXPECT_EQ(sectors_of_last_array().size(), 200u);
     EXPECT_GE(array.tasks, 12u) << "2000 s on eight threads";
     EXPECT_LE(cluster.batch(0).size(), 18u) << "90 s on two threads";
+    std::int32_t next = 0;
+    for (std::size_t task = 0; task < array.tasks; ++task) {
+        for (const worker::BakeRequest& baked : cluster.batch(task))
+            EXPECT_EQ(baked.sector.i, next++) << "neighbours stay together";
+    }
     EXPECT_GT(cluster.batch(0).size(), cluster.batch(array.tasks - 1).size()) << "smaller at the end";
     EXPECT_EQ(array.threads, 2);
     EXPECT_TRUE(fs::is_directory(array.log_folder));

@@ -66,6 +66,50 @@ TEST(JobBook, ReopenedJobGetsATaskOfItsOwn) {
     EXPECT_EQ(finished->jobs.size(), 2u);
 }
 
+JobRow nightly_job(std::int64_t id) {
+    JobRow job = running_job(id);
+    job.priority = executor::Priority::nightly;
+    return job;
+}
+
+TEST(JobBook, SectorsAreAskedForByPriority) {
+    JobBook book;
+    const WantedSector river{{5, 4}, std::nullopt, 7.5};
+    book.add(nightly_job(1), {&meadow, 1});
+    book.add(running_job(2), {&river, 1});
+    const auto first = book.next(executor::Priority::interactive);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->request.sector, river.sector);
+    EXPECT_EQ(std::tuple(first->priority, first->seconds), std::tuple(executor::Priority::interactive, 7.5));
+    EXPECT_FALSE(book.next(executor::Priority::interactive));
+    const auto second = book.next(executor::Priority::nightly);
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->request.sector, meadow.sector);
+    EXPECT_EQ(second->priority, executor::Priority::nightly);
+}
+
+TEST(JobBook, ANightlySectorThatSomebodyWaitsForIsBakedOnceAndEarly) {
+    JobBook book;
+    book.add(nightly_job(1), {&meadow, 1});
+    book.add(running_job(2), {&meadow, 1});
+    ASSERT_TRUE(book.next(executor::Priority::interactive));
+    EXPECT_FALSE(book.next(executor::Priority::nightly));
+}
+
+TEST(JobBook, ASectorAtWorkIsGivenUpWhenNobodyWantsIt) {
+    JobBook book;
+    book.add(running_job(1), {&meadow, 1});
+    const executor::SectorTask task = book.next(executor::Priority::interactive).value();
+    EXPECT_FALSE(book.give_up(task.id));
+    book.update(ended(running_job(1), JobState::cancelled));
+    EXPECT_TRUE(book.give_up(task.id));
+    EXPECT_TRUE(book.give_up(task.id)) << "it is forgotten";
+    EXPECT_FALSE(book.finish({task.id, 0, failure()}));
+    // The next job gets one of its own.
+    book.add(running_job(2), {&meadow, 1});
+    EXPECT_NE(book.next(executor::Priority::interactive)->id, task.id);
+}
+
 TEST(JobBook, ForgottenRequestIsNoAnswerAnyMore) {
     JobBook book;
     book.add(running_job(), {&meadow, 1});

@@ -142,7 +142,7 @@ TEST_F(BatchTest, AnotherBuildOrMachineIsRefusedInASentence) {
     EXPECT_EQ(refused([](BuildId&) {}), "");
     EXPECT_NE(refused([](BuildId& build) { build.baker_version = 99; }).find("baker version 99"),
               std::string::npos);
-    EXPECT_NE(refused([](BuildId& build) { build.commit = "abc"; }).find("a build of abc"),
+    EXPECT_NE(refused([](BuildId& build) { build.commit = "abc"; }).find("is a build of abc"),
               std::string::npos);
     EXPECT_NE(refused([](BuildId& build) { build.isa_class = "vax"; }).find("class vax"), std::string::npos);
 }
