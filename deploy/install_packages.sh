@@ -13,6 +13,7 @@ if [[ "${1:-}" == "--tests" ]]; then
   packages+=(
     black clang-14 clang-format-14 libbenchmark-dev libclang-rt-14-dev libgmock-dev libgtest-dev libxxhash-dev
     emscripten g++-12 g++-aarch64-linux-gnu node-acorn openssl python3-grpcio python3-jsonschema qemu-user shellcheck util-linux
+    munge slurm-client slurmctld slurmd
     chromium glslang-tools libegl1 libgl1-mesa-dri libvulkan1 python3-moderngl spirv-cross spirv-tools
   )
   # Debian's, where there are no others.

@@ -58,10 +58,10 @@ ROOMS = {
     "bakerd/worker": "bakerd/reuse bakerd/bake bakerd/trace bakerd/store bakerd/map settings TBB nlohmann_json spdlog fmt tl-expected",
     "bakerd/executor": "bakerd/worker bakerd/store spdlog fmt tl-expected",
     "bakerd/farm": "bakerd/executor bakerd/worker bakerd/reuse bakerd/bake bakerd/store bakerd/map settings SQLite spdlog fmt tl-expected",
-    "bakerd/service": "bakerd/farm bakerd/reuse bakerd/store bakerd/map map_files drtv/version.h settings/message settings proto gRPC protobuf fmt tl-expected",
+    "bakerd/service": "bakerd/farm bakerd/executor bakerd/reuse bakerd/store bakerd/map map_files drtv/version.h settings/message settings proto gRPC protobuf fmt tl-expected",
     "bakerd/picture": "bakerd/bake bakerd/trace bakerd/map map_files format/kit format/image format/folder format/cli format/light format/runtime format GLM TBB CLI11 fmt tl-expected",
     # main wires the rooms together and asks trace whether this CPU will do.
-    "bakerd": "bakerd/service bakerd/farm bakerd/executor bakerd/store bakerd/bake bakerd/picture bakerd/worker bakerd/trace format/cli CLI11 spdlog fmt",
+    "bakerd": "bakerd/service bakerd/farm bakerd/executor bakerd/store bakerd/bake bakerd/picture bakerd/worker bakerd/trace format/cli CLI11 spdlog fmt tl-expected",
     "client": "drtv/version.h settings/message settings map_files proto format/cli format/folder format/image format/spelling CLI11 nlohmann_json gRPC fmt tl-expected",
 }
 # A game may link these, so nothing in them may rest on a room under another licence.

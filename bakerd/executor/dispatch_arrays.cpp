@@ -42,15 +42,20 @@ void Dispatcher::load_arrays() {
             continue;
         }
         std::vector<std::vector<Digest>> batches;
+        std::set<Digest> keys;
         for (const std::vector<worker::BakeRequest>& sectors : file.batches) {
             std::vector<Digest>& batch = batches.emplace_back();
             for (const worker::BakeRequest& request : sectors) {
                 batch.push_back(worker::answer_key(request));
+                keys.insert(batch.back());
                 left_behind_[batch.back()] = {key, batches.size() - 1};
             }
         }
         spdlog::info("array {} goes on: {} tasks", key, batches.size());
         ArrayWatch watch(batches, options_.patience, now());
+        // Who asks for them again finds their answers.
+        for (const Digest& done : answers_.among(keys))
+            watch.settle(left_behind_.at(done).task, done);
         // Whether the cluster heard of it is not known.
         arrays_.emplace(key, Array{Priority::nightly, std::move(batches), std::move(watch), 0, false});
     }

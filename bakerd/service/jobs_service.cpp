@@ -1,3 +1,4 @@
+#include "bakerd/service/job_message.h"
 #include "bakerd/service/names.h"
 #include "bakerd/service/services.h"
 #include "settings/message/job_settings.h"
@@ -17,70 +18,6 @@ constexpr std::chrono::milliseconds watch_interval{100};  // at most ten message
 constexpr std::chrono::milliseconds watch_patience{
     500};  // how soon a gone client or a stopping server is noticed
 constexpr std::int64_t default_page = 50, max_page = 1000;
-
-v1::Job::State to_proto(farm::JobState state) {
-    switch (state) {
-        case farm::JobState::running:
-            return v1::Job::RUNNING;
-        case farm::JobState::succeeded:
-            return v1::Job::SUCCEEDED;
-        case farm::JobState::failed:
-            return v1::Job::FAILED;
-        case farm::JobState::cancelled:
-            return v1::Job::CANCELLED;
-        case farm::JobState::creating:
-            break;
-    }
-    return v1::Job::STATE_UNSPECIFIED;
-}
-
-void set_time(std::int64_t unix_ms, google::protobuf::Timestamp& out) {
-    out.set_seconds(unix_ms / 1000);
-    out.set_nanos(static_cast<std::int32_t>(unix_ms % 1000) * 1'000'000);
-}
-
-void fill_cluster(const executor::ClusterState& state, v1::ClusterState& out) {
-    out.set_nodes(static_cast<std::int32_t>(state.nodes));
-    out.set_nodes_up(static_cast<std::int32_t>(state.nodes_up));
-    out.set_tasks_waiting(static_cast<std::int64_t>(state.tasks_waiting));
-    out.set_tasks_running(static_cast<std::int64_t>(state.tasks_running));
-    out.set_tasks_lost(static_cast<std::int64_t>(state.tasks_lost));
-    out.set_trouble(state.trouble);
-}
-
-void fill(const farm::JobView& view, v1::Job& out) {
-    const farm::JobRow& row = view.row;
-    out.set_name(job_name(row.id));
-    out.set_map(map_name(row.manifest));
-    out.mutable_settings()->set_preset(row.preset);
-    settings::write_settings(row.settings, out);
-    if (const auto& region = row.region) {
-        out.mutable_region()->set_x0(region->x0);
-        out.mutable_region()->set_y0(region->y0);
-        out.mutable_region()->set_x1(region->x1);
-        out.mutable_region()->set_y1(region->y1);
-    }
-    out.set_state(view.waiting ? v1::Job::WAITING : to_proto(row.state));
-    out.set_error(row.error);
-    out.set_sectors_total(row.sectors_total);
-    out.set_sectors_done(row.sectors_done);
-    out.set_sectors_failed(row.sectors_failed);
-    out.set_sectors_cached(row.sectors_cached);
-    out.set_sectors_near(row.sectors_near);
-    out.set_largest_bound(static_cast<double>(row.largest_bound));
-    out.set_probes(row.probes);
-    out.set_rays(view.rays);
-    out.set_rays_per_second(view.rays_per_second);
-    out.set_seconds_left(view.seconds_left);
-    set_time(row.created_ms, *out.mutable_create_time());
-    if (row.ended_ms != 0)
-        set_time(row.ended_ms, *out.mutable_end_time());
-    for (const std::string& warning : view.warnings)
-        out.add_warnings(warning);
-    out.set_priority(row.priority == executor::Priority::nightly ? v1::Job::NIGHTLY : v1::Job::INTERACTIVE);
-    if (view.cluster)
-        fill_cluster(*view.cluster, *out.mutable_cluster());
-}
 
 v1::PlannedSector::Verdict to_proto(reuse::Verdict verdict) {
     switch (verdict) {
@@ -116,7 +53,7 @@ store::Result<farm::JobRequest> wanted_job(const v1::Job& job) {
 grpc::Status answer(const store::Result<farm::JobView>& view, v1::Job* response) {
     if (!view)
         return to_status(view.error());
-    fill(*view, *response);
+    fill_job(*view, *response);
     return grpc::Status::OK;
 }
 
@@ -189,7 +126,7 @@ grpc::Status JobsService::ListJobs(grpc::ServerContext*,
     if (!views)
         return to_status(views.error());
     for (std::size_t n = 0; n < views->size() && n < size; ++n)
-        fill((*views)[n], *response->add_jobs());
+        fill_job((*views)[n], *response->add_jobs());
     if (views->size() > size)
         response->set_next_page_token(std::to_string((*views)[size - 1].row.id));
     return grpc::Status::OK;
@@ -242,7 +179,7 @@ grpc::Status JobsService::WatchJob(grpc::ServerContext* context,
         cluster = view->cluster;
         seen = view->version;
         v1::Job job;
-        fill(*view, job);
+        fill_job(*view, job);
         if (!writer->Write(job))
             return grpc::Status::CANCELLED;
         if (view->row.state != farm::JobState::running)

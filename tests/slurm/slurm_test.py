@@ -182,6 +182,22 @@ class Faults(SlurmCase):
                 break
             self.cluster.start(name)
 
+    def submit_and_die(self, daemon, field):
+        """Another job, an artist's, so that there is an array to submit."""
+        open(self.mark, "w", encoding="utf-8").close()
+        self.farm.bake(
+            daemon,
+            "submit",
+            field,
+            "--preset",
+            "draft",
+            "--set",
+            "rays=64",
+            "--region",
+            "0,0,255,255",
+            "--yes",
+        )
+
     def test_all_is_delivered(self):
         field = write_field(self.farm.path("map/field.gltf"), 32)
         settings = ["--preset", "draft", "--set", f"rays={OPTIONS.rays}"]
@@ -198,7 +214,7 @@ class Faults(SlurmCase):
         events = [
             (20, "the daemon", daemon.kill),
             (40, "the controller, in good order", lambda: self.cluster.kill("controller", signal.SIGTERM)),
-            (70, "the daemon after sbatch", lambda: open(self.mark, "w", encoding="utf-8").close()),
+            (70, "the daemon after sbatch", lambda: self.submit_and_die(daemon, field)),
             (100, "the controller", lambda: self.cluster.kill("controller")),
             (130, "the daemon", daemon.kill),
         ]
@@ -226,6 +242,8 @@ class Faults(SlurmCase):
             nodes.join()
         took = time.monotonic() - begin
         self.assertEqual(self.job(daemon)["state"], "succeeded", daemon.log()[-4000:])
+        self.wait_for_job(daemon, 2)
+        self.assertFalse(os.path.exists(self.mark), "the daemon did not die after sbatch")
         wasted = self.wasted()
         print(
             f"{len(self.baked())} sectors in {took:.0f} s (this machine alone: {local_s:.0f} s); {len(killed)} nodes killed, "
