@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <random>
 
 namespace drtv::executor {
@@ -69,7 +70,7 @@ bool Dispatcher::may_bake(const ClusterNode& node) const {
 void Dispatcher::refuse_all(Priority priority) {
     const auto& [node, exclusion] = *excluded_.begin();
     const std::string why = fmt::format("no node may bake; of node {}: {}", node, exclusion.why);
-    for (const Digest& key : std::exchange(ready_[static_cast<std::size_t>(priority)], {})) {
+    for (const Digest& key : std::exchange(ready_[static_cast<std::size_t>(priority)], {}).keys) {
         if (const auto found = sectors_.find(key); found != sectors_.end() && !found->second.place)
             finish(key, tl::unexpected(worker::RequestFailure{why, false}));
     }
@@ -97,41 +98,46 @@ std::int64_t Dispatcher::memory_for(std::span<const std::vector<Digest>> batches
     return largest < (std::int64_t{1} << 30) ? 0 : std::min(wanted, largest);
 }
 
+// Enough that no slot idles before the next array is there; fewer are sooner done, and closed.
+std::size_t Dispatcher::tasks_of_array() const {
+    constexpr std::size_t least = 16;
+    return std::min(std::max(2 * slots(), least), view_->max_tasks);
+}
+
 std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
-    std::deque<Digest>& ready = ready_[static_cast<std::size_t>(priority)];
+    Ready& ready = ready_[static_cast<std::size_t>(priority)];
+    const std::size_t most = max_tasks_ > 0 ? std::min(max_tasks_, view_->max_tasks) : view_->max_tasks;
     std::vector<std::vector<Digest>> batches;
     std::vector<Digest> keys;
     std::vector<double> seconds;
     bool is_known = true;
+    std::deque<Digest> left;
     // What lies here may have been given up, or lie twice.
     std::set<Digest> seen;
-    for (const Digest& key : ready) {
+    for (const Digest& key : ready.keys) {
         const auto found = sectors_.find(key);
         if (found == sectors_.end() || found->second.place || !seen.insert(key).second)
             continue;
         if (found->second.alone) {
-            batches.push_back({key});
+            if (batches.size() < most)
+                batches.push_back({key});
+            else
+                left.push_back(key);
             continue;
         }
-        const double cost =
-            found->second.seconds > 0 ? found->second.seconds : costs_.seconds(found->second.kind);
-        is_known = is_known && cost > 0;
         keys.push_back(key);
-        seconds.push_back(cost);
-    }
-    ready.clear();
-    const std::size_t most = max_tasks_ > 0 ? std::min(max_tasks_, view_->max_tasks) : view_->max_tasks;
-    if (batches.size() > most) {
-        for (std::size_t n = most; n < batches.size(); ++n)
-            ready.push_back(batches[n].front());
-        batches.resize(most);
+        seconds.push_back(cost_of(found->second));
+        is_known = is_known && seconds.back() > 0;
     }
     BatchRule rule;
     rule.batch_s = options_.batch_s;
     rule.threads = view_->task_threads;
     rule.slots = slots();
-    rule.max_batches = most - batches.size();
-    rule.is_last = is_dry_[static_cast<std::size_t>(priority)];
+    rule.max_batches = most;
+    if (!ready.is_dry)
+        rule.max_batches = std::min(most, tasks_of_array());
+    rule.max_batches -= std::min(rule.max_batches, batches.size());
+    rule.is_last = ready.is_dry;
     if (!is_known) {
         // A few first, which tell what the others cost.
         std::ranges::fill(seconds, 1.0);
@@ -147,12 +153,16 @@ std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
                              keys.begin() + static_cast<std::ptrdiff_t>(end));
         begin = end;
     }
-    ready.insert(ready.end(), keys.begin() + static_cast<std::ptrdiff_t>(begin), keys.end());
+    left.insert(left.end(), keys.begin() + static_cast<std::ptrdiff_t>(begin), keys.end());
+    ready.seconds =
+        is_known ? std::accumulate(seconds.begin() + static_cast<std::ptrdiff_t>(begin), seconds.end(), 0.0)
+                 : 0;
+    ready.keys = std::move(left);
     return batches;
 }
 
 void Dispatcher::submit(Priority priority) {
-    if (!view_ || now() < next_submit_ || ready_[static_cast<std::size_t>(priority)].empty())
+    if (!view_ || now() < next_submit_ || ready_[static_cast<std::size_t>(priority)].keys.empty())
         return;
     const bool none_may = !excluded_.empty() && std::ranges::none_of(view_->nodes, [this](const auto& node) {
         return may_bake(node);

@@ -12,8 +12,9 @@
 namespace drtv::executor {
 namespace {
 
-// Taken up ahead of what is at work: as much as fills an array, and it is known what goes together.
-constexpr std::size_t max_ready = 20'000;
+// Taken up ahead of what is at work: before it is known how many fill an array, and at most.
+constexpr std::size_t few_ready = 1000;
+constexpr std::size_t max_ready = 400'000;
 
 constexpr std::chrono::minutes spent_answers_stay(1);
 
@@ -78,20 +79,46 @@ Dispatcher::Time Dispatcher::step() {
     return sectors_.empty() && arrays_.empty() ? next_view_ : std::min(next_answers_, next_queue_);
 }
 
+// What fills the next array: with more, a job that comes later would wait behind it.
+bool Dispatcher::is_enough(std::size_t sectors, double seconds) const {
+    if (sectors < few_ready)
+        return false;
+    if (!view_ || seconds == 0 || sectors >= max_ready)
+        return true;
+    return seconds >= static_cast<double>(tasks_of_array()) * options_.batch_s * view_->task_threads;
+}
+
+double Dispatcher::cost_of(const Sector& sector) const {
+    return sector.seconds > 0 ? sector.seconds : costs_.seconds(sector.kind);
+}
+
 void Dispatcher::pull() {
     for (const Priority priority : {Priority::interactive, Priority::nightly}) {
-        bool& dry = is_dry_[index_of(priority)];
-        dry = false;
-        while (!dry && ready_[index_of(priority)].size() + fresh_.size() < max_ready) {
-            if (auto task = callbacks_.next(priority))
-                take_up(std::move(*task));
-            else
-                dry = true;
+        Ready& ready = ready_[index_of(priority)];
+        // Their costs may have become known since.
+        for (const Digest& key : ready.seconds == 0 ? ready.keys : std::deque<Digest>()) {
+            if (const auto found = sectors_.find(key); found != sectors_.end())
+                ready.seconds += cost_of(found->second);
+        }
+        std::size_t sectors = ready.keys.size();
+        double seconds = ready.seconds;
+        ready.is_dry = false;
+        while (!ready.is_dry && !is_enough(sectors, seconds)) {
+            auto task = callbacks_.next(priority);
+            ready.is_dry = !task;
+            if (!task)
+                break;
+            const std::size_t waiting = fresh_.size();
+            const double cost = take_up(std::move(*task));
+            // One that an earlier run's array has is at work.
+            sectors += fresh_.size() - waiting;
+            seconds += fresh_.size() > waiting ? cost : 0;
         }
     }
 }
 
-void Dispatcher::take_up(SectorTask task) {
+// Gives what baking it will cost.
+double Dispatcher::take_up(SectorTask task) {
     const Digest key = worker::answer_key(task.request);
     const auto [entry, is_new] = sectors_.try_emplace(key);
     Sector& sector = entry->second;
@@ -100,7 +127,7 @@ void Dispatcher::take_up(SectorTask task) {
         // Two jobs want the same, and one of them was opened again.
         if (!sector.place)
             fresh_.push_back(key);
-        return;
+        return cost_of(sector);
     }
     sector.request = std::move(task.request);
     sector.kind = Costs::kind_of(sector.request);
@@ -109,10 +136,11 @@ void Dispatcher::take_up(SectorTask task) {
     const auto known = left_behind_.find(key);
     if (known == left_behind_.end()) {
         fresh_.push_back(key);
-        return;
+        return cost_of(sector);
     }
     sector.place = std::move(known->second);
     left_behind_.erase(known);
+    return cost_of(sector);
 }
 
 void Dispatcher::collect_answers() {
@@ -128,8 +156,12 @@ void Dispatcher::collect_answers() {
             deliver(key, *answer);
     }
     for (const Digest& key : fresh) {
-        if (const auto left = sectors_.find(key); left != sectors_.end() && !left->second.place)
-            ready_[index_of(left->second.priority)].push_back(key);
+        const auto left = sectors_.find(key);
+        if (left == sectors_.end() || left->second.place)
+            continue;
+        Ready& ready = ready_[index_of(left->second.priority)];
+        ready.keys.push_back(key);
+        ready.seconds += cost_of(left->second);
     }
 }
 

@@ -78,6 +78,12 @@ class Dispatcher {
         bool alone = false;          // a task that had it, and others, failed
         std::optional<Place> place;  // nothing: it is ready
     };
+    // Sectors that wait for an array.
+    struct Ready {
+        std::deque<Digest> keys;  // in the order of baking; some may have been given up
+        double seconds = 0;       // of one thread, that they take, as far as is known
+        bool is_dry = false;      // nothing waits behind them
+    };
     // A node that must not bake.
     struct Exclusion {
         Time until;
@@ -103,7 +109,9 @@ class Dispatcher {
 
     // dispatcher.cpp: sectors and their answers.
     void pull();
-    void take_up(SectorTask task);
+    [[nodiscard]] bool is_enough(std::size_t sectors, double seconds) const;
+    [[nodiscard]] double cost_of(const Sector& sector) const;
+    [[nodiscard]] double take_up(SectorTask task);
     void collect_answers();
     void deliver(const Digest& key, const worker::TaskAnswer& answer);
     void finish(const Digest& key,
@@ -125,6 +133,7 @@ class Dispatcher {
     void refuse_all(Priority priority);
     [[nodiscard]] bool may_bake(const ClusterNode& node) const;
     [[nodiscard]] std::size_t slots() const;
+    [[nodiscard]] std::size_t tasks_of_array() const;
     [[nodiscard]] std::int64_t memory_for(std::span<const std::vector<Digest>> batches) const;
 
     DispatchOptions options_;
@@ -135,9 +144,8 @@ class Dispatcher {
     worker::Answers answers_;
 
     std::map<Digest, Sector> sectors_;  // taken up, by the key of the answer
-    std::vector<Digest> fresh_;  // of these, for which no answer has been looked for, in the order of baking
-    std::array<std::deque<Digest>, 2> ready_;     // by priority, in the order of baking
-    std::array<bool, 2> is_dry_{};                // nothing waits behind what is ready, by priority
+    std::vector<Digest> fresh_;   // of these, for which no answer has been looked for, in the order of baking
+    std::array<Ready, 2> ready_;  // by priority
     std::map<std::string, Array> arrays_;         // that are open
     std::map<Digest, Place> left_behind_;         // in an earlier run's arrays, and not taken up yet
     std::vector<std::pair<Digest, Time>> spent_;  // answers that were delivered, and when

@@ -192,6 +192,19 @@ TEST_F(DispatcherTest, WhatSectorsCostIsLearntFromAFew) {
     EXPECT_EQ(cluster.arrays[1].memory_bytes, 256 << 20) << "its peak was 3 MiB";
 }
 
+// So that all nodes have work when the costs are known.
+TEST_F(DispatcherTest, AnArrayOfAJobThatIsNewFillsTheCluster) {
+    add(50'000, 0);
+    pass(2s);
+    EXPECT_EQ(cluster.arrays[0].tasks, 8u);
+    EXPECT_GT(queue.size(), 48'000u);
+    answer(0);
+    pass(2s);
+    ASSERT_EQ(cluster.arrays.size(), 2u);
+    EXPECT_EQ(cluster.arrays[1].tasks, 16u);
+    EXPECT_EQ(cluster.batch(15).size(), 60u);
+}
+
 TEST_F(DispatcherTest, TheNextDaemonGoesOnWithTheArrays) {
     add(40, 10);
     pass(2s);
@@ -494,7 +507,8 @@ TEST_F(DispatcherTest, InteractiveSectorsDoNotWaitForTheNight) {
     add(60'000, 90);
     pass(10s);
     EXPECT_EQ(cluster.arrays.size(), 2u);
-    EXPECT_EQ(cluster.arrays[0].tasks, 1000u);
+    EXPECT_EQ(cluster.arrays[0].tasks, 16u) << "four nodes";
+    EXPECT_GT(queue.size(), 50'000u) << "what is not taken up yet may be overtaken";
     add(9, 10, Priority::interactive);
     pass(2s);
     ASSERT_EQ(cluster.arrays.size(), 3u);
