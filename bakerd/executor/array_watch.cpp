@@ -49,6 +49,10 @@ void ArrayWatch::hear(std::span<const ClusterTask> tasks, Time now) {
             continue;
         task.idle_lists = task.is_alive && task.unanswered.empty() ? task.idle_lists + 1 : 0;
         task.last = *found->second;
+        if (task.last->state == TaskState::running)
+            task.node = task.last->node;
+        else if (task.is_alive)
+            task.last->node = task.node;
         if (task.is_alive) {
             task.heard = now;
             task.ended.reset();

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace drtv::executor {
@@ -51,7 +52,7 @@ class ArrayWatch {
     [[nodiscard]] bool is_over() const;
     // The queue has shown it.
     [[nodiscard]] bool is_known() const { return is_known_; }
-    // Those that the queue called alive in its last list.
+    // Those that the queue called alive in its last list. Of one that is not at work `node` is where it was.
     [[nodiscard]] std::vector<ClusterTask> alive() const;
     // Of these, those that had no sector left to answer in two lists, each once: nothing ends them but we.
     [[nodiscard]] std::vector<ClusterTask> take_idle();
@@ -63,6 +64,7 @@ class ArrayWatch {
         Time heard;                 // last time that it was alive
         std::optional<Time> ended;  // when the queue first said so
         std::optional<ClusterTask> last;
+        std::string node;    // on which it was seen at work last
         int idle_lists = 0;  // in a row, in which it was alive with nothing to do
         bool is_alive = false;
         bool is_taken = false;

@@ -83,12 +83,23 @@ void Dispatcher::ask_queue() {
     }
 }
 
+// A requeued task waits until its old node would take it again: before that, the node drops it without a word
+// (cred_expire in slurm.conf(5)). One whose node is gone waits for nothing.
+bool Dispatcher::is_to_be_let_go(Array& array, const ClusterTask& task) {
+    if (task.state == TaskState::held)
+        return array.releases[task.number]++ < max_releases;
+    if (task.state != TaskState::delayed || task.node.empty())
+        return false;
+    if (now() >= viewed_ + options_.queue_every)
+        view_cluster();
+    return view_ && std::ranges::any_of(view_->nodes, [&](const ClusterNode& node) {
+               return node.name == task.node && !node.is_up;
+           });
+}
+
 void Dispatcher::judge(const std::string& key, Array& array) {
     std::vector<ClusterTask> waiting = array.watch.alive();
-    std::erase_if(waiting, [&](const ClusterTask& task) {
-        return task.state != TaskState::delayed &&
-               (task.state != TaskState::held || array.releases[task.number]++ >= max_releases);
-    });
+    std::erase_if(waiting, [&](const ClusterTask& task) { return !is_to_be_let_go(array, task); });
     cluster_->nudge(waiting);
     const std::vector<EndedTask> ended = array.watch.take_ended(now());
     for (const EndedTask& task : ended)

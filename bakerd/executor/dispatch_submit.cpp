@@ -26,6 +26,7 @@ std::string new_key() {
 
 void Dispatcher::view_cluster() {
     auto view = cluster_->view();
+    viewed_ = now();
     view_trouble_ = view ? "" : view.error();
     next_view_ = now() + (view ? options_.cluster_every : options_.queue_every);
     if (!view) {

@@ -1,6 +1,7 @@
 #include "bakerd/executor/dispatcher.h"
 
 #include "bakerd/store/owner.h"
+#include "bakerd/store/sweep.h"
 #include "bakerd/worker/build_id.h"
 
 #include <fmt/format.h>
@@ -17,6 +18,17 @@ constexpr std::size_t few_ready = 1000;
 constexpr std::size_t max_ready = 400'000;
 
 constexpr std::chrono::minutes spent_answers_stay(1);
+constexpr std::chrono::hours lost_answers_stay(24 * 7);
+constexpr std::chrono::hours logs_stay(24 * 30);
+
+void sweep(const DispatchOptions& options) {
+    const std::string& store = options.store_folder;
+    store::remove_leftovers(store + "/answers/tmp");
+    store::remove_leftovers(fmt::format("{}/arrays/{}/tmp", store, options.owner));
+    // Of tasks that ended after their array had been closed.
+    store::remove_old_files(store + "/answers", lost_answers_stay);
+    store::remove_old_files(store + "/logs", logs_stay);
+}
 
 std::size_t index_of(Priority priority) {
     return static_cast<std::size_t>(priority);
@@ -39,6 +51,7 @@ store::Result<Dispatcher> Dispatcher::open(DispatchOptions options,
             store::write_mark(options.store_folder + "/build", worker::text_of(worker::this_build()));
         !marked)
         return tl::unexpected(marked.error());
+    sweep(options);
     Dispatcher dispatcher(
         std::move(options), cluster, blobs, std::move(callbacks), std::move(*folder), std::move(*answers));
     dispatcher.load_arrays();

@@ -124,6 +124,7 @@ class Dispatcher {
 
     // dispatch_arrays.cpp: arrays and the queue.
     void ask_queue();
+    [[nodiscard]] bool is_to_be_let_go(Array& array, const ClusterTask& task);
     void judge(const std::string& key, Array& array);
     void try_again(const Array& array, const EndedTask& ended);
     void close_arrays();
@@ -152,6 +153,7 @@ class Dispatcher {
     std::map<std::string, Exclusion> excluded_;   // nodes
     Costs costs_;
     std::optional<ClusterView> view_;
+    Time viewed_;                // when it was asked for last
     std::size_t max_tasks_ = 0;  // of the next array; 0: what the cluster allows
     int refusals_ = 0;           // in a row
     std::size_t lost_ = 0;       // tasks

@@ -45,7 +45,9 @@ tl::expected<void, Refusal> Slurm::submit(const ClusterArray& array) {
                                         "--chdir=/",
                                         fmt::format("--output={}/%a.log", array.log_folder),
                                         "--open-mode=append",
-                                        "--export=NIL"};
+                                        // Any other value begins each task with a login shell, which may
+                                        // take long.
+                                        "--export=ALL"};
     const auto add = [&](const char* name, const std::string& value) {
         if (!value.empty())
             command.push_back(fmt::format("--{}={}", name, value));

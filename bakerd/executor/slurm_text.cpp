@@ -42,6 +42,9 @@ TaskState state_of_waiting(std::string_view reason) {
 std::optional<TaskState> state_of(std::string_view state, std::string_view reason) {
     if (state == "PENDING")
         return state_of_waiting(reason);
+    // Requeued so often that Slurm leaves it to people (max_batch_requeue).
+    if (state == "REQUEUE_HOLD" || state == "SPECIAL_EXIT")
+        return TaskState::held;
     // One word each; a state that a later Slurm adds counts as alive.
     static const std::map<std::string_view, TaskState> ended = {
         {"COMPLETED", TaskState::done},

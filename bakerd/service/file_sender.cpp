@@ -13,18 +13,24 @@ namespace {
 
 constexpr std::size_t max_pack_bytes = max_chunk_bytes / 4, max_packed_file_bytes = max_pack_bytes / 2;
 
+// Where the server keeps it says nothing to a client.
+const char* what_is_wrong(store::ErrorCode code) {
+    if (code == store::ErrorCode::not_found)
+        return "is no longer kept";
+    return code == store::ErrorCode::unavailable ? "cannot be read now" : "is damaged";
+}
+
 }  // namespace
 
 bool FileSender::send(const farm::JobSectorView& view) {
     const auto bytes = blobs_.get(view.row.file);
     if (!bytes) {
-        // Where the server keeps it says nothing to a client.
-        const bool is_gone = bytes.error().code == store::ErrorCode::not_found;
+        is_unreadable_ = is_unreadable_ || bytes.error().code == store::ErrorCode::unavailable;
         if (++lost_ == 1)
-            first_loss_ = fmt::format("the file of sector ({}, {}) is {}",
+            first_loss_ = fmt::format("the file of sector ({}, {}) {}",
                                       view.row.sector.i,
                                       view.row.sector.j,
-                                      is_gone ? "no longer kept" : "damaged");
+                                      what_is_wrong(bytes.error().code));
         return true;
     }
     if (!in_packs_ || bytes->size() > max_packed_file_bytes)
@@ -67,6 +73,9 @@ grpc::Status FileSender::finish() {
     if (lost_ == 0)
         return grpc::Status::OK;
     const std::string more = lost_ > 1 ? fmt::format(" (and {} more)", lost_ - 1) : "";
+    if (is_unreadable_)
+        return failed(grpc::StatusCode::UNAVAILABLE,
+                      fmt::format("{}{}: the server's store is in trouble", first_loss_, more));
     return failed(
         grpc::StatusCode::DATA_LOSS,
         fmt::format(

@@ -32,6 +32,7 @@ class FileSender {
     v1::PullSectorsResponse pack_;
     std::size_t pack_bytes_ = 0;
     std::int64_t lost_ = 0;
+    bool is_unreadable_ = false;  // a file may be there, and cannot be read
     std::string first_loss_;
 };
 

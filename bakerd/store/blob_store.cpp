@@ -1,14 +1,14 @@
 #include "bakerd/store/blob_store.h"
 
 #include "bakerd/store/durable_file.h"
-#include "bakerd/store/temporary_name.h"
+#include "bakerd/store/sweep.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <cerrno>
 #include <filesystem>
 
 namespace drtv::store {
@@ -27,21 +27,7 @@ Result<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& folder) {
 }
 
 void BlobStore::remove_leftovers() const {
-    constexpr std::chrono::hours old{24};
-    // The clock of the folder's own machine may be another one than ours.
-    const std::string probe = fmt::format("{}/tmp/{}", folder_, temporary_name());
-    std::error_code code;
-    if (!FileDescriptor(::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666)).is_open())
-        return;
-    const fs::file_time_type now = fs::last_write_time(probe, code);
-    fs::remove(probe, code);
-    for (fs::directory_iterator entry(folder_ + "/tmp", code), end; !code && entry != end;
-         entry.increment(code)) {
-        std::error_code ignored;
-        const bool is_old = now - fs::last_write_time(entry->path(), ignored) > old && !ignored;
-        if (is_old || is_of_dead_process(entry->path().filename().string()))
-            fs::remove(entry->path(), ignored);
-    }
+    store::remove_leftovers(folder_ + "/tmp");
 }
 
 std::string BlobStore::path_of(const Digest& digest) const {
@@ -54,7 +40,7 @@ std::string BlobStore::part_path(const Digest& digest) const {
 }
 
 bool BlobStore::has(const Digest& digest) const {
-    return ::access(path_of(digest).c_str(), R_OK) == 0;
+    return ::access(path_of(digest).c_str(), F_OK) == 0 || (errno != ENOENT && errno != ENOTDIR);
 }
 
 Result<Digest> BlobStore::put(std::span<const std::uint8_t> bytes) {
@@ -70,7 +56,7 @@ Result<std::vector<std::uint8_t>> BlobStore::get(const Digest& digest) {
     const std::string path = path_of(digest);
     auto bytes = read_all(path);
     if (!bytes)
-        return fail(has(digest) ? bytes.error().code : ErrorCode::not_found, bytes.error().message);
+        return fail(has(digest) ? ErrorCode::unavailable : ErrorCode::not_found, bytes.error().message);
     if (map::digest_of(*bytes) != digest) {
         ::unlink(path.c_str());
         return fail(ErrorCode::data_loss,

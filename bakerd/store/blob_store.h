@@ -24,16 +24,16 @@ class BlobStore {
     // `folder` must exist; its parts are made when needed.
     [[nodiscard]] static Result<std::unique_ptr<BlobStore>> open(const std::string& folder);
 
-    // Temporary files of this machine's processes that died at work, and of any machine's after a day: other
-    // machines may be writing to the folder.
+    // Of uploads and of blobs that were being written (sweep.h).
     void remove_leftovers() const;
 
     [[nodiscard]] Result<Digest> put(std::span<const std::uint8_t> bytes);
 
     // Checks the digest of what it reads: a damaged blob is removed and reported as data_loss, never
-    // returned. not_found: there is none; internal: it is there and cannot be read.
+    // returned. not_found: there is none; unavailable: it may be there, and cannot be read now.
     [[nodiscard]] Result<std::vector<std::uint8_t>> get(const Digest& digest);
 
+    // False where it is certain that there is none: a store that cannot be reached may have it.
     [[nodiscard]] bool has(const Digest& digest) const;
 
     // Nothing happens when there is none.

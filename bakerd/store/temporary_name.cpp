@@ -1,6 +1,7 @@
 #include "bakerd/store/temporary_name.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -9,6 +10,8 @@
 #include <charconv>
 #include <csignal>
 #include <cstdint>
+#include <fstream>
+#include <string>
 #include <system_error>
 
 namespace drtv::store {
@@ -19,19 +22,30 @@ std::string host_name() {
     return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
+// In which a process's number means this process: machines and containers may have one name, and a machine
+// that has started again gives its numbers again.
+std::string machine() {
+    std::ifstream file("/proc/sys/kernel/random/boot_id");
+    std::string boot;
+    std::getline(file, boot);
+    struct stat processes {};
+    const bool is_known = ::stat("/proc/self/ns/pid", &processes) == 0;
+    return fmt::format("{}-{}-{}", host_name(), boot.substr(0, 8), is_known ? processes.st_ino : 0);
+}
+
 }  // namespace
 
 std::string temporary_name() {
     static std::atomic<std::uint64_t> counter{0};
-    static const std::string host = host_name();
-    return fmt::format("{}.{}.{}", host, ::getpid(), counter++);
+    static const std::string here = machine();
+    return fmt::format("{}.{}.{}", here, ::getpid(), counter++);
 }
 
 bool is_of_dead_process(const std::string& name) {
-    const std::string host = host_name() + ".";
+    const std::string here = machine() + ".";
     pid_t pid = 0;
-    if (!name.starts_with(host) ||
-        std::from_chars(name.data() + host.size(), name.data() + name.size(), pid).ec != std::errc())
+    if (!name.starts_with(here) ||
+        std::from_chars(name.data() + here.size(), name.data() + name.size(), pid).ec != std::errc())
         return false;
     return pid != ::getpid() && ::kill(pid, 0) != 0 && errno == ESRCH;
 }

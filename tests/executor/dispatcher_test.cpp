@@ -473,11 +473,15 @@ TEST_F(DispatcherTest, MoreMemoryIsAskedForAfterTooLittle) {
     EXPECT_LE(cluster.arrays[2].memory_bytes, std::int64_t{8} << 30) << "no node has more";
 }
 
-TEST_F(DispatcherTest, DelayedTasksAreLetGoAndHeldOnesThreeTimes) {
+TEST_F(DispatcherTest, TasksOfADeadNodeAreLetGoAndHeldOnesThreeTimes) {
     add(20);
     pass(2s);
     cluster.set_all(TaskState::running);
+    pass(10s);
     cluster.set(0, TaskState::delayed);
+    pass(1min);
+    EXPECT_TRUE(cluster.nudged.empty()) << "its node lives, and would drop it";
+    cluster.cluster.nodes[0].is_up = false;
     cluster.set(1, TaskState::held);
     pass(1min);
     const std::string& key = cluster.arrays[0].key;

@@ -109,6 +109,7 @@ TEST(ParseTask, ReadsWhatSlurmWrites) {
     EXPECT_EQ(state("PENDING|BeginTime"), TaskState::delayed);
     EXPECT_EQ(state("PENDING|launch failed requeued held"), TaskState::held);
     EXPECT_EQ(state("PENDING|JobHeldUser"), TaskState::held);
+    EXPECT_EQ(state("REQUEUE_HOLD|JobHoldMaxRequeue"), TaskState::held);
     EXPECT_EQ(state("COMPLETING|None"), TaskState::running);
     EXPECT_EQ(state("CANCELLED|None"), TaskState::cancelled);
     EXPECT_EQ(state("NODE_FAIL|None"), TaskState::lost);

@@ -1,4 +1,6 @@
 #include "bakerd/store/blob_store.h"
+#include "bakerd/store/sweep.h"
+#include "bakerd/store/temporary_name.h"
 #include "tests/store/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -67,7 +69,7 @@ TEST_F(BlobStoreTest, AnUnreadableBlobIsNotCalledMissing) {
     fs::create_directory(object(digest));
     const auto got = store->get(digest);
     ASSERT_FALSE(got);
-    EXPECT_EQ(got.error().code, ErrorCode::internal) << got.error().message;
+    EXPECT_EQ(got.error().code, ErrorCode::unavailable) << got.error().message;
 }
 
 TEST_F(BlobStoreTest, ADamagedBlobIsRemovedAndReported) {
@@ -82,10 +84,10 @@ TEST_F(BlobStoreTest, ADamagedBlobIsRemovedAndReported) {
     EXPECT_TRUE(store->put(bytes_of("abc")));
 }
 
+// As this machine's names begin.
 std::string this_host() {
-    char name[256] = {};
-    EXPECT_EQ(::gethostname(name, sizeof name - 1), 0);
-    return name;
+    const std::string name = temporary_name();
+    return name.substr(0, name.find('.' + std::to_string(::getpid()) + '.'));
 }
 
 TEST_F(BlobStoreTest, ADeadProcessesTemporaryIsNoObstacle) {
@@ -108,7 +110,8 @@ TEST_F(BlobStoreTest, LeftoversGoAndWhatOthersAreWritingStays) {
         return path;
     };
     const std::string of_the_dead = temporary(this_host(), dead), of_the_living = temporary(this_host(), 1);
-    const std::string elsewhere = temporary(this_host() + "-2", dead), old = temporary("far", 1);
+    // A container of that name has other numbers.
+    const std::string elsewhere = temporary(this_host() + "2", dead), old = temporary("far", 1);
     fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(25));
     store->remove_leftovers();
     EXPECT_FALSE(fs::exists(of_the_dead));
@@ -116,6 +119,41 @@ TEST_F(BlobStoreTest, LeftoversGoAndWhatOthersAreWritingStays) {
     EXPECT_TRUE(fs::exists(elsewhere));
     EXPECT_FALSE(fs::exists(old));
     EXPECT_EQ(temporaries(), 2u);
+}
+
+// As on a store that is not reached: a path that cannot be followed to its end.
+TEST_F(BlobStoreTest, WhatCannotBeReadMayBeThere) {
+    const Digest digest = store->put(bytes_of("blob")).value();
+    const std::string part = folder.path() + "/objects/" + to_hex(digest).substr(0, 2);
+    fs::remove_all(part);
+    EXPECT_FALSE(store->has(digest));
+    EXPECT_EQ(store->get(digest).error().code, ErrorCode::not_found);
+    fs::create_symlink(part, part);
+    EXPECT_TRUE(store->has(digest));
+    EXPECT_EQ(store->get(digest).error().code, ErrorCode::unavailable);
+    EXPECT_NE(store->get(digest).error().message.find(part), std::string::npos);
+}
+
+TEST(Sweep, OldFilesGoAtAnyDepth) {
+    const test::TemporaryFolder folder;
+    for (const char* part : {"/a", "/b", "/tmp"})
+        fs::create_directories(folder.path() + part);
+    const auto aged = [&](const std::string& name, std::chrono::hours age) {
+        test::write_file(folder.path() + name, "x");
+        fs::last_write_time(folder.path() + name, fs::file_time_type::clock::now() - age);
+    };
+    aged("/a/old", std::chrono::hours(30));
+    aged("/b/old", std::chrono::hours(30));
+    aged("/b/new", std::chrono::hours(20));
+    aged("/tmp/old", std::chrono::hours(30));
+    fs::last_write_time(folder.path() + "/a", fs::file_time_type::clock::now() - std::chrono::hours(30));
+    remove_old_files(folder.path(), std::chrono::hours(25));
+    EXPECT_FALSE(fs::exists(folder.path() + "/a/old"));
+    EXPECT_FALSE(fs::exists(folder.path() + "/b/old"));
+    EXPECT_TRUE(fs::exists(folder.path() + "/b/new"));
+    EXPECT_TRUE(fs::exists(folder.path() + "/tmp/old"));
+    EXPECT_EQ(test::files_below(folder.path()), 2u);
+    remove_old_files(folder.path() + "/nowhere", std::chrono::hours(25));
 }
 
 TEST_F(BlobStoreTest, ManyThreadsPutTheSameBlobs) {

@@ -1,0 +1,261 @@
+// A farm that bakes, event by event: how its time grows and shrinks with nodes, and what they ask of the
+// store, the network, the daemon and Slurm. Batches are cut by the daemon's own rule
+// (bakerd/executor/batches.h); sectors cost what was measured.
+//   simulate_farm COSTS.json --sectors 25600 --nodes 4 [--threads 16] [...]
+#include "bakerd/executor/batches.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <fstream>
+#include <functional>
+#include <queue>
+#include <string>
+#include <vector>
+
+namespace {
+
+using drtv::executor::BatchRule;
+using drtv::executor::cut_batches;
+
+struct Farm {
+    std::string costs;
+    std::size_t sectors = 25600;
+    std::size_t nodes = 4;
+    int threads = 16;            // of a node, and of a task
+    double batch_s = 90;         // that a task should take
+    double launch_s = 0.45;      // from a free slot to a task's first instruction
+    double launches_per_s = 60;  // that the controller can begin
+    double load_s = 1;           // for the map, of which a task's threads wait
+    double map_mb = 100;         // that a task reads
+    double network_mb_s = 1100;  // of the store
+    double files_per_s = 2000;   // that the store can make durable
+    double daemon_per_s = 1000;  // answers that the daemon can record
+    double look_s = 1.5;         // between looks for answers
+    double slowdown = 1;         // of sectors, where cores are fewer than threads
+};
+
+struct Cost {
+    double seconds = 0;
+    double mb = 0;  // written
+};
+
+struct Report {
+    double seconds = 0;
+    double busy_s = 0;  // of threads, in sectors alone
+    std::size_t tasks = 0, arrays = 0;
+    double written_mb = 0, read_mb = 0, files = 0;
+    double recorded_s = 0;  // when the daemon has recorded the last answer
+};
+
+std::vector<Cost> read_costs(const std::string& path) {
+    std::ifstream file(path);
+    std::vector<Cost> costs;
+    const nlohmann::json json = nlohmann::json::parse(file);
+    for (const auto& sector : json.at("sectors"))
+        costs.push_back({sector.at(0).get<double>(), sector.at(1).get<double>() / 1e6});
+    return costs;
+}
+
+// A server that does one thing after another, as the store makes files durable.
+class Server {
+  public:
+    explicit Server(double per_s) : per_s_(per_s) {}
+    // When `count` of them that come at `now` are done.
+    double serve(double now, double count) {
+        free_ = std::max(free_, now) + count / per_s_;
+        return free_;
+    }
+
+  private:
+    double per_s_;
+    double free_ = 0;
+};
+
+class Simulation {
+  public:
+    Simulation(const Farm& farm, std::vector<Cost> costs)
+        : farm_(farm),
+          costs_(std::move(costs)),
+          launches_(farm.launches_per_s),
+          network_(farm.network_mb_s),
+          store_(farm.files_per_s),
+          daemon_(farm.daemon_per_s),
+          slots_(farm.nodes) {}
+
+    Report run() {
+        for (std::size_t slot = 0; slot < farm_.nodes; ++slot)
+            idle_.push_back(slot);
+        // Before anything is known of the costs: two tasks a slot, of one sector a thread.
+        std::vector<std::size_t> ends;
+        for (std::size_t task = 0; task < 2 * farm_.nodes; ++task)
+            ends.push_back((task + 1) * static_cast<std::size_t>(farm_.threads));
+        submit(0, ends);
+        while (!events_.empty()) {
+            const Event event = events_.top();
+            events_.pop();
+            (this->*event.what)(event);
+        }
+        report_.seconds = end_ + farm_.look_s / 2;
+        return report_;
+    }
+
+  private:
+    struct Event {
+        double time = 0;
+        void (Simulation::*what)(const Event&) = nullptr;
+        std::size_t slot = 0;
+        std::size_t sector = 0;
+
+        bool operator>(const Event& other) const { return time > other.time; }
+    };
+    struct Task {
+        std::size_t next = 0, end = 0, array = 0;
+    };
+    struct Slot {
+        Task task;
+        int threads = 0;  // at work
+    };
+
+    [[nodiscard]] const Cost& cost(std::size_t sector) const { return costs_[sector % costs_.size()]; }
+
+    // Tasks of the next sectors, whose runs end there.
+    void submit(double now, const std::vector<std::size_t>& ends) {
+        open_.push_back(0);
+        ++report_.arrays;
+        const std::size_t first = taken_;
+        for (const std::size_t end : ends) {
+            const std::size_t to = std::min(first + end, farm_.sectors);
+            if (to == taken_)
+                break;
+            waiting_.push_back({taken_, to, open_.size() - 1});
+            ++open_.back();
+            taken_ = to;
+        }
+        start_tasks(now);
+    }
+
+    void submit_next(double now) {
+        while (taken_ < farm_.sectors &&
+               std::ranges::count_if(open_, [](std::size_t tasks) { return tasks > 0; }) < 2) {
+            const double mean_s = baked_s_ / static_cast<double>(baked_) * farm_.slowdown;
+            BatchRule rule;
+            rule.batch_s = farm_.batch_s;
+            rule.threads = farm_.threads;
+            rule.slots = farm_.nodes;
+            const std::size_t tasks = std::max(2 * farm_.nodes, std::size_t{16});
+            const double fill = static_cast<double>(tasks) * farm_.batch_s * farm_.threads / mean_s;
+            const std::size_t left = farm_.sectors - taken_;
+            rule.is_last = static_cast<double>(left) <= fill;
+            rule.max_batches = rule.is_last ? 1000 : tasks;
+            const std::vector<double> seconds(rule.is_last ? left : static_cast<std::size_t>(fill) + 1,
+                                              mean_s);
+            submit(now, cut_batches(seconds, rule));
+        }
+    }
+
+    void start_tasks(double now) {
+        while (!idle_.empty() && !waiting_.empty()) {
+            const std::size_t slot = idle_.back();
+            idle_.pop_back();
+            slots_[slot].task = waiting_.front();
+            waiting_.pop_front();
+            ++report_.tasks;
+            report_.read_mb += farm_.map_mb;
+            events_.push({launches_.serve(now, 1) + farm_.launch_s, &Simulation::load, slot, 0});
+        }
+    }
+
+    void load(const Event& event) {
+        const double read = network_.serve(event.time, farm_.map_mb);
+        slots_[event.slot].threads = farm_.threads;
+        for (int thread = 0; thread < farm_.threads; ++thread)
+            events_.push({read + farm_.load_s, &Simulation::next_sector, event.slot, 0});
+    }
+
+    void next_sector(const Event& event) {
+        Slot& slot = slots_[event.slot];
+        if (slot.task.next < slot.task.end) {
+            const std::size_t sector = slot.task.next++;
+            events_.push(
+                {event.time + cost(sector).seconds * farm_.slowdown, &Simulation::write, event.slot, sector});
+            return;
+        }
+        if (--slot.threads > 0)
+            return;
+        end_ = std::max(end_, event.time);
+        // The daemon sees the last answer when it looks next.
+        if (--open_[slot.task.array] == 0)
+            events_.push({event.time + farm_.look_s, &Simulation::look, 0, 0});
+        idle_.push_back(event.slot);
+        start_tasks(event.time);
+    }
+
+    // Its file, its footprint and its answer; each is synced before the thread goes on.
+    void write(const Event& event) {
+        const Cost& written = cost(event.sector);
+        const double done = std::max(network_.serve(event.time, written.mb), store_.serve(event.time, 3));
+        events_.push({done, &Simulation::next_sector, event.slot, 0});
+        report_.busy_s += written.seconds * farm_.slowdown;
+        report_.written_mb += written.mb;
+        report_.files += 3;
+        report_.recorded_s = daemon_.serve(done, 1);
+        baked_s_ += written.seconds;
+        if (++baked_ == 1)
+            events_.push({done + farm_.look_s, &Simulation::look, 0, 0});
+    }
+
+    void look(const Event& event) { submit_next(event.time); }
+
+    const Farm& farm_;
+    const std::vector<Cost> costs_;
+    Server launches_, network_, store_, daemon_;
+    std::vector<Slot> slots_;
+    std::vector<std::size_t> idle_;
+    std::deque<Task> waiting_;
+    std::vector<std::size_t> open_;  // tasks left, by array
+    std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
+    std::size_t taken_ = 0, baked_ = 0;
+    double baked_s_ = 0, end_ = 0;
+    Report report_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Farm farm;
+    CLI::App app{"Simulates a farm."};
+    app.add_option("COSTS", farm.costs, "JSON: sectors: [[seconds, bytes], ...]")
+        ->required()
+        ->check(CLI::ExistingFile);
+    app.add_option("--sectors", farm.sectors);
+    app.add_option("--nodes", farm.nodes);
+    app.add_option("--threads", farm.threads);
+    app.add_option("--batch", farm.batch_s);
+    app.add_option("--launch", farm.launch_s);
+    app.add_option("--launches-per-s", farm.launches_per_s);
+    app.add_option("--load", farm.load_s);
+    app.add_option("--map-mb", farm.map_mb);
+    app.add_option("--network-mb-s", farm.network_mb_s);
+    app.add_option("--files-per-s", farm.files_per_s);
+    app.add_option("--daemon-per-s", farm.daemon_per_s);
+    app.add_option("--slowdown", farm.slowdown);
+    CLI11_PARSE(app, argc, argv);
+    const Report report = Simulation(farm, read_costs(farm.costs)).run();
+    const double cores = static_cast<double>(farm.nodes) * farm.threads;
+    std::printf(
+        "{\"nodes\": %zu, \"sectors\": %zu, \"seconds\": %.1f, \"efficiency\": %.4f, \"core_seconds\": %.0f, "
+        "\"tasks\": %zu, "
+        "\"arrays\": %zu, \"read_gb\": %.1f, \"written_gb\": %.1f, \"network_mb_s\": %.1f, \"files_per_s\": "
+        "%.0f, "
+        "\"answers_per_s\": %.0f, \"tasks_per_s\": %.2f, \"recorded_s\": %.1f}\n",
+        farm.nodes, farm.sectors, report.seconds, report.busy_s / (report.seconds * cores), report.busy_s,
+        report.tasks, report.arrays, report.read_mb / 1e3, report.written_mb / 1e3,
+        (report.read_mb + report.written_mb) / report.seconds, report.files / report.seconds,
+        static_cast<double>(farm.sectors) / report.seconds,
+        static_cast<double>(report.tasks) / report.seconds, report.recorded_s);
+    return 0;
+}
