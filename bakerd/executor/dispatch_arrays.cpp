@@ -13,6 +13,7 @@ namespace drtv::executor {
 namespace {
 
 constexpr int max_releases = 3;
+constexpr std::chrono::minutes spent_answers_stay(1);
 constexpr std::chrono::minutes nodes_stay_excluded(10);
 
 // The sentence with which a task's log ends; it may be longer than what fits into a line of ours.
@@ -177,6 +178,18 @@ void Dispatcher::close_arrays() {
         }
         return true;
     });
+}
+
+// Until then a task that runs twice finds them, and a daemon that starts again.
+void Dispatcher::remove_spent_answers() {
+    const auto kept = std::ranges::partition(spent_, [this](const auto& spent) {
+                          return now() - spent.second < spent_answers_stay;
+                      }).begin();
+    for (auto spent = kept; spent != spent_.end(); ++spent) {
+        if (!sectors_.contains(spent->first))
+            answers_.remove(spent->first);
+    }
+    spent_.erase(kept, spent_.end());
 }
 
 }  // namespace drtv::executor

@@ -17,7 +17,6 @@ namespace {
 constexpr std::size_t few_ready = 1000;
 constexpr std::size_t max_ready = 400'000;
 
-constexpr std::chrono::minutes spent_answers_stay(1);
 constexpr std::chrono::hours lost_answers_stay(24 * 7);
 constexpr std::chrono::hours logs_stay(24 * 30);
 
@@ -234,18 +233,6 @@ void Dispatcher::give_up_unwanted() {
         settle(key, sector);
         entry = sectors_.erase(entry);
     }
-}
-
-// Until then a task that runs twice finds them, and a daemon that starts again.
-void Dispatcher::remove_spent_answers() {
-    const auto kept = std::ranges::partition(spent_, [this](const auto& spent) {
-                          return now() - spent.second < spent_answers_stay;
-                      }).begin();
-    for (auto spent = kept; spent != spent_.end(); ++spent) {
-        if (!sectors_.contains(spent->first))
-            answers_.remove(spent->first);
-    }
-    spent_.erase(kept, spent_.end());
 }
 
 }  // namespace drtv::executor

@@ -119,7 +119,6 @@ class Dispatcher {
                 const std::string& node = {},
                 const std::string& log = {});
     void settle(const Digest& key, Sector& sector);
-    void remove_spent_answers();
     void give_up_unwanted();
 
     // dispatch_arrays.cpp: arrays and the queue.
@@ -128,6 +127,7 @@ class Dispatcher {
     void judge(const std::string& key, Array& array);
     void try_again(const Array& array, const EndedTask& ended);
     void close_arrays();
+    void remove_spent_answers();
     void view_cluster();
     void submit(Priority priority);
     [[nodiscard]] std::vector<std::vector<Digest>> cut(Priority priority);

@@ -1,7 +1,7 @@
 // A farm that bakes, event by event: how its time grows and shrinks with nodes, and what they ask of the
 // store, the network, the daemon and Slurm. Batches are cut by the daemon's own rule
 // (bakerd/executor/batches.h); sectors cost what was measured.
-//   simulate_farm COSTS.json --sectors 25600 --nodes 4 [--threads 16] [...]
+//   simulate_farm COSTS --sectors 25600 --nodes 4 [--threads 16] [...]
 #include "bakerd/executor/batches.h"
 
 #include <CLI/CLI.hpp>
