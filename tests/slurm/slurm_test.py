@@ -143,14 +143,25 @@ class SlurmCase(unittest.TestCase):
 class Short(SlurmCase):
     """One node's and one daemon's death."""
 
+    def expect_doctor_is_content(self):
+        doctor = os.path.join(OPTIONS.bin, "bakerd")
+        done = self.cluster.run("srun", "--nodelist=node1", doctor, "doctor", "--store", self.store)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("4 of 4 nodes can bake", done.stdout)
+        done = self.cluster.run(doctor, "doctor", "--store", self.farm.path("nowhere"))
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"FAULT +store +\S+ is no daemon's store")
+
     def test_a_node_and_the_daemon_die(self):
         field = write_field(self.farm.path("map/field.gltf"), 10)
         settings = ["--preset", "draft", "--set", "rays=1024"]
         local = self.farm.daemon("local_data")
         self.bake(local, "submit", field, *settings, "--wait", "--yes")
         daemon = self.slurm_daemon("--slurm-batch", "4")
+        self.expect_doctor_is_content()
         self.bake(daemon, "submit", field, *settings, "--yes", "--priority", "nightly")
         wait_until(lambda: self.job(daemon)["sectors_done"] >= 8, 60, "the first sectors")
+        self.assertEqual(self.job(daemon)["cluster"]["nodes"], 4)
         self.cluster.kill("node2")
         open(self.mark, "w", encoding="utf-8").close()
         time.sleep(1)
@@ -163,6 +174,9 @@ class Short(SlurmCase):
         self.wait_for_job(daemon, patience_s=120)
         self.expect_same_files(daemon, 1, local)
         self.assertEqual(len(self.baked()), 100)
+        log = json.loads(self.bake(daemon, "--json", "logs", "1", "3,4").stdout)
+        self.assertIn(log["node"], self.cluster.names)
+        self.assertTrue(log["lines"] and all("sector (3, 4)" in line for line in log["lines"]), log)
         self.expect_clean_store()
         self.assertEqual(daemon.stop(), 0)
 
