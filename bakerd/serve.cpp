@@ -19,6 +19,7 @@ namespace drtv {
 namespace {
 
 farm::ExecutorOptions executor_options(const ServeOptions& options,
+                                       const std::string& store_folder,
                                        const std::string& blob_folder,
                                        int threads) {
     const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
@@ -30,11 +31,8 @@ farm::ExecutorOptions executor_options(const ServeOptions& options,
     executor.slurm = options.slurm;
     executor.batch_s = options.batch_s;
     executor.differs_status = cli::exit_differs;
-    // Tasks start elsewhere: a relative path would mean another folder.
-    executor.task_command = {options.task_program.empty() ? self : options.task_program,
-                             "task",
-                             "--store",
-                             std::filesystem::absolute(options.store).lexically_normal().string()};
+    executor.task_command = {
+        options.task_program.empty() ? self : options.task_program, "task", "--store", store_folder};
     return executor;
 }
 
@@ -94,9 +92,12 @@ cli::Result<cli::ExitCode> serve(const ServeOptions& options) {
     }
     farm::Farm::Options farm_options;
     farm_options.data_folder = options.data;
-    farm_options.store_folder = options.store;
+    // A task starts elsewhere: a relative path would mean another folder.
+    if (!options.store.empty())
+        farm_options.store_folder = std::filesystem::absolute(options.store).lexically_normal().string();
     farm_options.cache_bytes = options.cache_bytes;
-    farm_options.executor = executor_options(options, farm_options.blob_folder(), threads);
+    farm_options.executor =
+        executor_options(options, farm_options.store_folder, farm_options.blob_folder(), threads);
     auto farm = farm::Farm::open(std::move(farm_options));
     if (!farm)
         return cli::fail(cli::exit_unreadable, farm.error().message);

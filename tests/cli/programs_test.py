@@ -23,9 +23,10 @@ COMMANDS = {
         "report",
         "retry",
         "pull",
+        "logs",
         "cache",
     ],
-    "bakerd": ["serve", "worker", "task", "render"],
+    "bakerd": ["serve", "worker", "task", "render", "doctor"],
 }
 # Nobody listens there.
 NOWHERE = "127.0.0.1:1"
