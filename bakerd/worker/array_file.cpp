@@ -109,10 +109,17 @@ tl::expected<Batch, std::string> read_batch(const std::string& path, std::size_t
     if (task >= head->ends.size())
         return fail(fmt::format("it has no task {}, but {}", task, head->ends.size()));
     const std::size_t begin = begin_of(*head, task), end = head->ends[task];
-    std::string lines(end < begin ? 0 : end - begin, '\0');
-    file.seekg(static_cast<std::streamoff>(begin), std::ios::cur);
-    if (!file.read(lines.data(), static_cast<std::streamsize>(lines.size())))
+    if (file.eof())
         return fail(fmt::format("task {} is cut off", task));
+    const auto body = static_cast<std::size_t>(file.tellg());
+    file.seekg(0, std::ios::end);
+    const auto size = static_cast<std::size_t>(file.tellg()) - body;
+    if (end < begin || end > size)
+        return fail(fmt::format("task {} is cut off", task));
+    std::string lines(end - begin, '\0');
+    file.seekg(static_cast<std::streamoff>(body + begin));
+    if (!file.read(lines.data(), static_cast<std::streamsize>(lines.size())))
+        return fail(fmt::format("task {} cannot be read", task));
     auto sectors = batch_of(lines);
     if (!sectors)
         return fail(fmt::format("task {} is damaged", task));

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What the sectors in a daemon's cache cost, for simulate_farm: seconds of one thread and bytes written, in the order of baking.
 
-    sector_costs.py DATA_FOLDER > costs.json"""
+    sector_costs.py DATA_FOLDER > COSTS"""
 import json
 import os
 import sqlite3

@@ -228,6 +228,15 @@ TEST(ArrayFile, AnyPrefixAndAnyChangedByteIsDefined) {
         static_cast<void>(decode_array(changed));
         static_cast<void>(read_batch(path, 1));
     }
+    // More than there is, or than any memory holds.
+    for (const char* end : {"100000", "18446744073709551615"}) {
+        test::write_file(path,
+                         fmt::format("{{\"version\":1,\"baker_version\":6,\"commit\":\"abc\",\"isa_class\":"
+                                     "\"avx2\",\"ends\":[{}]}}\nx\n",
+                                     end));
+        ASSERT_FALSE(read_batch(path, 0));
+        EXPECT_NE(read_batch(path, 0).error().find("cut off"), std::string::npos);
+    }
 }
 
 }  // namespace
