@@ -16,6 +16,7 @@ worker::Digest Costs::kind_of(const worker::BakeRequest& request) {
 void Costs::learn(const worker::BakeRequest& request, const worker::TaskAnswer& answer) {
     std::int64_t& peak = peak_memory_[request.manifest];
     peak = std::max(peak, answer.peak_memory_bytes);
+    load_seconds_[request.manifest] = answer.load_seconds;
     // A rebake's seconds are those of a bake from nothing.
     const auto* result = std::get_if<worker::SectorResult>(&answer.what);
     if (result == nullptr || request.earlier)
@@ -36,6 +37,11 @@ double Costs::seconds(const worker::Digest& kind) const {
     const auto known = seconds_.find(kind);
     // A sector without probes takes no time that is worth a word; the cut needs some.
     return known == seconds_.end() ? 0 : std::max(known->second, 1e-4);
+}
+
+double Costs::load_seconds(const worker::BakeRequest& request) const {
+    const auto known = load_seconds_.find(request.manifest);
+    return known == load_seconds_.end() ? 0 : known->second;
 }
 
 std::int64_t Costs::memory_bytes(const worker::BakeRequest& request) const {

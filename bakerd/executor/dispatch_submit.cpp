@@ -112,6 +112,7 @@ std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
     std::vector<Digest> keys;
     std::vector<double> seconds;
     bool is_known = true;
+    double load_s = 0;
     std::deque<Digest> left;
     // What lies here may have been given up, or lie twice.
     std::set<Digest> seen;
@@ -127,11 +128,16 @@ std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
             continue;
         }
         keys.push_back(key);
+        load_s = std::max(load_s, costs_.load_seconds(found->second.request));
         seconds.push_back(cost_of(found->second));
         is_known = is_known && seconds.back() > 0;
     }
     BatchRule rule;
     rule.batch_s = options_.batch_s;
+    // A task that loads a large map should bake for longer, where nobody waits for it.
+    if (priority == Priority::nightly)
+        rule.batch_s = std::max(rule.batch_s, 8 * load_s);
+    rule.least_s = std::max(rule.least_s, 2 * load_s);
     rule.threads = view_->task_threads;
     rule.slots = slots();
     rule.max_batches = most;

@@ -56,8 +56,10 @@ store::Result<void> Answers::write(const Digest& key, const TaskAnswer& answer) 
             return encode(Answer{0, what});
         },
         answer.what);
-    const Json task = {
-        {"node", answer.node}, {"log", answer.log}, {"peak_memory_bytes", answer.peak_memory_bytes}};
+    const Json task = {{"node", answer.node},
+                       {"log", answer.log},
+                       {"peak_memory_bytes", answer.peak_memory_bytes},
+                       {"load_seconds", answer.load_seconds}};
     const std::string text = line + "\n" + task.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     return store::write_durably(folder_ + "/tmp", path_of(key), store::bytes_of_text(text));
 }
@@ -101,6 +103,7 @@ std::optional<TaskAnswer> Answers::read(const Digest& key) const {
         read.node = task.at("node").get<std::string>();
         read.log = task.at("log").get<std::string>();
         read.peak_memory_bytes = task.at("peak_memory_bytes").get<std::int64_t>();
+        read.load_seconds = task.at("load_seconds").get<double>();
     } catch (const Json::exception&) {
         return std::nullopt;
     }

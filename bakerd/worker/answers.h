@@ -21,6 +21,7 @@ struct TaskAnswer {
     std::string node;
     std::string log;                     // file of the task's log, for people
     std::int64_t peak_memory_bytes = 0;  // of the task so far
+    double load_seconds = 0;             // that passed before the task could bake
 };
 
 class Answers {

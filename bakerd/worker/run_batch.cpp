@@ -9,6 +9,9 @@
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <utility>
@@ -36,6 +39,7 @@ class BatchRun {
         if (!answers_.among({key}).empty() && answers_.read(key))
             return;
         const auto what = worker_.answer({0, request}).what;
+        note_load(what);
         if (const auto* result = std::get_if<SectorResult>(&what)) {
             tell(request.sector, *result);
             write(request.sector, key, *result);
@@ -60,9 +64,19 @@ class BatchRun {
     }
 
     void write(const map::SectorCoordinate& sector, const Digest& key, decltype(TaskAnswer::what) what) {
-        const TaskAnswer answer{std::move(what), options_.node, log_, peak_memory_bytes()};
+        const TaskAnswer answer{std::move(what), options_.node, log_, peak_memory_bytes(), load_seconds_};
         if (auto written = answers_.write(key, answer); !written)
             note(sector, written.error().message);
+    }
+
+    // The first sector waits for the map; the others' answers come later.
+    void note_load(const decltype(Answer::what)& what) {
+        const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
+        const auto* result = std::get_if<SectorResult>(&what);
+        const std::lock_guard lock(mutex_);
+        if (!is_loaded_ && result != nullptr)
+            load_seconds_ = std::max(passed.count() - result->stages.total(), 0.0);
+        is_loaded_ = true;
     }
 
     void note(const map::SectorCoordinate& sector, const std::string& sentence) {
@@ -75,8 +89,11 @@ class BatchRun {
     const std::string log_;
     const Answers answers_;
     Worker& worker_;
+    const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::mutex mutex_;
-    std::string failure_;  // guarded by mutex_
+    std::string failure_;     // guarded by mutex_
+    bool is_loaded_ = false;  // guarded by mutex_
+    std::atomic<double> load_seconds_ = 0;
 };
 
 }  // namespace

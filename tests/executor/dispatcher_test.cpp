@@ -91,8 +91,8 @@ class DispatcherTest : public testing::Test {
         cluster.set(task, TaskState::done);
     }
     void answer(const worker::BakeRequest& baked, decltype(worker::TaskAnswer::what) what) {
-        ASSERT_TRUE(
-            answers.write(worker::answer_key(baked), {std::move(what), "node3", "logs/x/1.log", 3 << 20}));
+        ASSERT_TRUE(answers.write(worker::answer_key(baked),
+                                  {std::move(what), "node3", "logs/x/1.log", 3 << 20, load_s}));
     }
     void answer_all() {
         for (std::size_t task = 0; task < cluster.arrays.back().tasks; ++task)
@@ -129,6 +129,7 @@ class DispatcherTest : public testing::Test {
     std::uint64_t added = 0;
     std::map<std::uint64_t, SectorEnd> ends;
     std::set<std::uint64_t> unwanted;
+    double load_s = 0;  // of tasks' answers
     std::optional<Dispatcher> dispatcher;
 };
 
@@ -190,6 +191,16 @@ TEST_F(DispatcherTest, WhatSectorsCostIsLearntFromAFew) {
     ASSERT_EQ(cluster.arrays.size(), 2u);
     EXPECT_EQ(cluster.batch(0).size(), 60u) << "of 3 s each, 90 s on two threads";
     EXPECT_EQ(cluster.arrays[1].memory_bytes, 256 << 20) << "its peak was 3 MiB";
+}
+
+TEST_F(DispatcherTest, ATaskThatLoadsALargeMapBakesForLonger) {
+    load_s = 30;
+    add(50'000, 0);
+    pass(2s);
+    answer(0);
+    pass(2s);
+    ASSERT_EQ(cluster.arrays.size(), 2u);
+    EXPECT_EQ(cluster.batch(0).size(), 160u) << "of 3 s each, 240 s on two threads";
 }
 
 // So that all nodes have work when the costs are known.

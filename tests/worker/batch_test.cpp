@@ -85,6 +85,8 @@ TEST_F(BatchTest, TasksBakeWhatAWorkerBakes) {
         EXPECT_EQ(answer->node, "node7");
         EXPECT_EQ(answer->log, sector == sectors[3] ? "logs/7/1.log" : "logs/7/0.log");
         EXPECT_GT(answer->peak_memory_bytes, 1 << 20);
+        EXPECT_GT(answer->load_seconds, 0);
+        EXPECT_LT(answer->load_seconds, 100);
         const auto& baked = std::get<SectorResult>(answer->what);
         const auto asked = worker->answer({0, request(sector, manifest)});
         const auto& expected = std::get<SectorResult>(asked.what);
