@@ -132,7 +132,7 @@ void examine_slurm(const std::string& partition, Findings& findings) {
     for (const executor::ClusterNode& node : view->nodes)
         up += static_cast<std::size_t>(node.is_up);
     const std::string nodes =
-        fmt::format("{} of {} nodes can bake; arrays of up to {} tasks, of {} threads each",
+        fmt::format("{} of {} nodes can bake; arrays have up to {} tasks, a task has threads: {}",
                     up,
                     view->nodes.size(),
                     view->max_tasks,

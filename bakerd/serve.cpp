@@ -112,7 +112,9 @@ cli::Result<cli::ExitCode> serve(const ServeOptions& options) {
 
     int signal = 0;
     sigwait(&signals, &signal);
-    spdlog::info("stopping: the running sectors are finished or put back");
+    spdlog::info("stopping: {}",
+                 options.executor == "slurm" ? "tasks on the cluster go on"
+                                             : "the running sectors are finished or put back");
     // The farm first: calls that wait for it get their answer, and the server need not wait for them.
     (*farm)->stop(std::chrono::seconds(10));
     (*server)->stop();

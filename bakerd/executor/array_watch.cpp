@@ -49,7 +49,12 @@ void ArrayWatch::hear(std::span<const ClusterTask> tasks, Time now) {
             continue;
         task.idle_lists = task.is_alive && task.unanswered.empty() ? task.idle_lists + 1 : 0;
         task.last = *found->second;
-        if (task.last->state == TaskState::running)
+        const bool is_running = task.last->state == TaskState::running;
+        // It was put into the queue again.
+        if (task.is_alive && !is_running && task.is_running)
+            ++requeued_;
+        task.is_running = is_running;
+        if (is_running)
             task.node = task.last->node;
         else if (task.is_alive)
             task.last->node = task.node;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace drtv::executor {
@@ -52,9 +53,12 @@ class ArrayWatch {
     [[nodiscard]] bool is_over() const;
     // The queue has shown it.
     [[nodiscard]] bool is_known() const { return is_known_; }
+    // Tasks that the cluster has put into its queue again since the last call.
+    [[nodiscard]] std::size_t take_requeued() { return std::exchange(requeued_, 0); }
     // Those that the queue called alive in its last list. Of one that is not at work `node` is where it was.
     [[nodiscard]] std::vector<ClusterTask> alive() const;
-    // Of these, those that had no sector left to answer in two lists, each once: nothing ends them but we.
+    // Of the living, those that had no sector left to answer in two lists, each once: nothing ends them but
+    // we.
     [[nodiscard]] std::vector<ClusterTask> take_idle();
 
   private:
@@ -67,6 +71,7 @@ class ArrayWatch {
         std::string node;    // on which it was seen at work last
         int idle_lists = 0;  // in a row, in which it was alive with nothing to do
         bool is_alive = false;
+        bool is_running = false;
         bool is_taken = false;
     };
 
@@ -75,6 +80,7 @@ class ArrayWatch {
     Patience patience_;
     std::vector<Task> tasks_;
     bool is_known_ = false;
+    std::size_t requeued_ = 0;
 };
 
 }  // namespace drtv::executor

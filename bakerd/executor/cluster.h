@@ -60,7 +60,7 @@ struct ClusterNode {
     std::string name;
     int threads = 0;
     std::int64_t memory_bytes = 0;
-    bool is_up = false;
+    bool is_up = false;  // it bakes, or could
     std::string reason;  // why it is not; empty where nobody said
 };
 

@@ -105,7 +105,11 @@ void Dispatcher::judge(const std::string& key, Array& array) {
     const std::vector<EndedTask> ended = array.watch.take_ended(now());
     for (const EndedTask& task : ended)
         try_again(array, task);
-    lost_ += ended.size();
+    const std::size_t lost = ended.size() + array.watch.take_requeued();
+    lost_ += lost;
+    // Nodes may have gone with them.
+    if (lost > 0)
+        next_view_ = now();
     if (!ended.empty())
         spdlog::info("array {}: {} tasks ended with sectors to bake: {}",
                      key,

@@ -28,7 +28,8 @@ void Dispatcher::view_cluster() {
     auto view = cluster_->view();
     viewed_ = now();
     view_trouble_ = view ? "" : view.error();
-    next_view_ = now() + (view ? options_.cluster_every : options_.queue_every);
+    const bool is_whole = view && std::ranges::all_of(view->nodes, &ClusterNode::is_up);
+    next_view_ = now() + (is_whole ? options_.cluster_every : 2 * options_.queue_every);
     if (!view) {
         spdlog::warn("{}", view.error());
         return;
@@ -56,7 +57,7 @@ ClusterState Dispatcher::state() const {
         if (may_bake(node) || !state.trouble.empty())
             continue;
         const auto excluded = excluded_.find(node.name);
-        state.trouble = fmt::format("node {} cannot bake: {}",
+        state.trouble = fmt::format("{} cannot bake: {}",
                                     node.name,
                                     excluded == excluded_.end() ? node.reason : excluded->second.why);
     }
@@ -70,7 +71,7 @@ bool Dispatcher::may_bake(const ClusterNode& node) const {
 // Better than to wait for somebody who mends the nodes and does not know that he should.
 void Dispatcher::refuse_all(Priority priority) {
     const auto& [node, exclusion] = *excluded_.begin();
-    const std::string why = fmt::format("no node may bake; of node {}: {}", node, exclusion.why);
+    const std::string why = fmt::format("no node may bake; of {}: {}", node, exclusion.why);
     for (const Digest& key : std::exchange(ready_[static_cast<std::size_t>(priority)], {}).keys) {
         if (const auto found = sectors_.find(key); found != sectors_.end() && !found->second.place)
             finish(key, tl::unexpected(worker::RequestFailure{why, false}));
@@ -221,7 +222,7 @@ void Dispatcher::submit(Priority priority) {
     if (taken) {
         refusals_ = 0;
         max_tasks_ = 2 * max_tasks_ >= view_->max_tasks ? 0 : 2 * max_tasks_;
-        spdlog::info("array {}: {} sectors in {} tasks", array.key, sectors, array.tasks);
+        spdlog::info("array {}: tasks {}, sectors {}", array.key, array.tasks, sectors);
         return;
     }
     spdlog::warn("array {} was perhaps not taken: {}", array.key, taken.error().sentence);

@@ -62,9 +62,6 @@ tl::expected<void, Refusal> Slurm::submit(const ClusterArray& array) {
     add("cpus-per-task", std::to_string(array.threads));
     if (array.memory_bytes > 0)
         add("mem", fmt::format("{}M", (array.memory_bytes + (1 << 20) - 1) >> 20));
-    // Among one user's own jobs it is what the order is made by.
-    if (array.priority == Priority::nightly)
-        command.emplace_back("--nice=1000");
     command.insert(command.end(), options_.arguments.begin(), options_.arguments.end());
     command.push_back("--wrap=" + batch_script(array.command));
     const auto said = run(command);
@@ -73,7 +70,16 @@ tl::expected<void, Refusal> Slurm::submit(const ClusterArray& array) {
     if (!is_job_number(*said))
         return tl::unexpected(
             Refusal{fmt::format("sbatch gave no job's number, but {:?}", said->substr(0, 80)), false});
+    if (array.priority == Priority::nightly)
+        step_back(said->substr(0, said->find_first_of(";\n")));
     return {};
+}
+
+// Behind all interactive arrays. Not by sbatch --nice: priority/basic puts each new job below the lowest one
+// that was ever submitted.
+void Slurm::step_back(const std::string& job) const {
+    if (const auto said = run({"scontrol", "update", "jobid=" + job, "nice=100000"}); !said)
+        spdlog::warn("interactive sectors may have to wait for nightly ones: {}", said.error());
 }
 
 tl::expected<std::vector<ClusterTask>, std::string> Slurm::list(std::span<const std::string> keys) {

@@ -36,6 +36,7 @@ class Slurm final : public Cluster {
     void nudge(std::span<const ClusterTask> tasks) override;
 
   private:
+    void step_back(const std::string& job) const;
     [[nodiscard]] tl::expected<std::string, std::string> run(const std::vector<std::string>& command) const;
 
     const SlurmOptions options_;

@@ -154,8 +154,9 @@ store::Result<void> write_job(Database& database, const Plan& plan, JobRow& job)
 std::vector<WantedSector> wanted_by(const Plan& plan) {
     std::vector<WantedSector> wanted;
     for (const PlannedSector& planned : plan.sectors) {
+        // Without an earlier result the time is only a mean, perhaps of other settings.
         if (!planned.reused)
-            wanted.push_back({planned.sector, planned.earlier, planned.seconds});
+            wanted.push_back({planned.sector, planned.earlier, planned.earlier ? planned.seconds : 0});
     }
     return wanted;
 }

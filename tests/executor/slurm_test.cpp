@@ -177,7 +177,7 @@ TEST_F(SlurmTest, AnArrayIsSubmittedByName) {
          {"--parsable", "--job-name=drtv-1", "--dependency=singleton", "--requeue", "--array=0-11",
           "--output=/store/logs/drtv-1/%a.log", "--cpus-per-task=3", "--wrap=exec '/opt/my bakerd' 'task'"})
         EXPECT_TRUE(called_with(argument)) << argument << calls();
-    for (const char* argument : {"--account", "--partition", "--mem", "--nice", "--exclude", "--time"})
+    for (const char* argument : {"--account", "--partition", "--mem", "nice", "--exclude", "--time"})
         EXPECT_EQ(calls().find(argument), std::string::npos) << argument;
 }
 
@@ -197,7 +197,7 @@ TEST_F(SlurmTest, WhatIsConfiguredIsAskedFor) {
     ASSERT_TRUE(Slurm(options).submit(wanted));
     for (const char* argument : {"--account=film", "--partition=night", "--qos=low", "--constraint=avx2",
                                  "--time=30", "--array=0-11%5", "--exclusive", "--comment=a b", "--mem=3073M",
-                                 "--exclude=node1,node7", "--nice=1000"})
+                                 "--exclude=node1,node7", "jobid=17", "nice=100000"})
         EXPECT_TRUE(called_with(argument)) << argument << calls();
 }
 
