@@ -28,6 +28,11 @@ std::chrono::milliseconds ArrayWatch::patience_for(const ClusterTask& ended) con
                                                                     : patience_.answer;
 }
 
+bool ArrayWatch::expects(std::size_t task, const Digest& answer) const {
+    return task < tasks_.size() &&
+           std::ranges::find(tasks_[task].unanswered, answer) != tasks_[task].unanswered.end();
+}
+
 void ArrayWatch::settle(std::size_t task, const Digest& answer) {
     std::erase(tasks_.at(task).unanswered, answer);
 }

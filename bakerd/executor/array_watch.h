@@ -40,6 +40,9 @@ class ArrayWatch {
     // `batches` are the keys of the answers, by task.
     ArrayWatch(const std::vector<std::vector<Digest>>& batches, Patience patience, Time now);
 
+    // Whether the task may still answer it.
+    [[nodiscard]] bool expects(std::size_t task, const Digest& answer) const;
+
     // It has its answer, or nobody wants it any more.
     void settle(std::size_t task, const Digest& answer);
 

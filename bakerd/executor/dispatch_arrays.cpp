@@ -55,8 +55,13 @@ void Dispatcher::load_arrays() {
         spdlog::info("array {} goes on: {} tasks", key, batches.size());
         ArrayWatch watch(batches, options_.patience, now());
         // Who asks for them again finds their answers.
-        for (const Digest& done : answers_.among(keys))
-            watch.settle(left_behind_.at(done).task, done);
+        const std::set<Digest> answered = answers_.among(keys);
+        for (std::size_t task = 0; task < batches.size(); ++task) {
+            for (const Digest& sector : batches[task]) {
+                if (answered.contains(sector) && answers_.read(sector))
+                    watch.settle(task, sector);
+            }
+        }
         // Whether the cluster heard of it is not known.
         arrays_.emplace(key, Array{Priority::nightly, std::move(batches), std::move(watch), 0, false});
     }
@@ -104,7 +109,7 @@ void Dispatcher::judge(const std::string& key, Array& array) {
     cluster_->nudge(waiting);
     const std::vector<EndedTask> ended = array.watch.take_ended(now());
     for (const EndedTask& task : ended)
-        try_again(array, task);
+        try_again(key, array, task);
     const std::size_t lost = ended.size() + array.watch.take_requeued();
     lost_ += lost;
     // Nodes may have gone with them.
@@ -119,7 +124,7 @@ void Dispatcher::judge(const std::string& key, Array& array) {
         cluster_->cancel(idle);
 }
 
-void Dispatcher::try_again(const Array& array, const EndedTask& ended) {
+void Dispatcher::try_again(const std::string& array_key, const Array& array, const EndedTask& ended) {
     const auto state = ended.last ? ended.last->state : TaskState::lost;
     const bool was_refused = !ended.last && !array.was_taken && !array.watch.is_known();
     const bool differs = state == TaskState::done && ended.last->exit_status == options_.differs_status;
@@ -142,6 +147,9 @@ void Dispatcher::try_again(const Array& array, const EndedTask& ended) {
         if (found == sectors_.end())
             continue;
         Sector& sector = found->second;
+        // Another array has it since.
+        if (!sector.place || sector.place->array != array_key)
+            continue;
         sector.place.reset();
         if (state == TaskState::out_of_memory)
             costs_.learn_too_little(sector.request, std::max(array.memory_bytes, std::int64_t{1} << 30));
@@ -176,8 +184,9 @@ void Dispatcher::close_arrays() {
         folder_.remove(key);
         for (const std::vector<Digest>& batch : array.batches) {
             for (const Digest& sector : batch) {
-                spent_.emplace_back(sector, now());
-                left_behind_.erase(sector);
+                if (const auto left = left_behind_.find(sector);
+                    left != left_behind_.end() && left->second.array == key)
+                    left_behind_.erase(left);
             }
         }
         return true;
@@ -186,12 +195,13 @@ void Dispatcher::close_arrays() {
 
 // Until then a task that runs twice finds them, and a daemon that starts again.
 void Dispatcher::remove_spent_answers() {
-    const auto kept = std::ranges::partition(spent_, [this](const auto& spent) {
-                          return now() - spent.second < spent_answers_stay;
-                      }).begin();
+    const auto kept =
+        std::ranges::partition(spent_, [this](const Spent& spent) {
+            return arrays_.contains(spent.array) || now() - spent.delivered < spent_answers_stay;
+        }).begin();
     for (auto spent = kept; spent != spent_.end(); ++spent) {
-        if (!sectors_.contains(spent->first))
-            answers_.remove(spent->first);
+        if (!sectors_.contains(spent->answer))
+            answers_.remove(spent->answer);
     }
     spent_.erase(kept, spent_.end());
 }

@@ -172,9 +172,10 @@ std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
 void Dispatcher::submit(Priority priority) {
     if (!view_ || now() < next_submit_ || ready_[static_cast<std::size_t>(priority)].keys.empty())
         return;
-    const bool none_may = !excluded_.empty() && std::ranges::none_of(view_->nodes, [this](const auto& node) {
-        return may_bake(node);
-    });
+    // A node that is down for a moment may be the one that can.
+    const bool none_may =
+        !view_->nodes.empty() &&
+        std::ranges::all_of(view_->nodes, [this](const auto& node) { return excluded_.contains(node.name); });
     if (none_may) {
         refuse_all(priority);
         return;

@@ -146,12 +146,13 @@ double Dispatcher::take_up(SectorTask task) {
     sector.priority = task.priority;
     sector.seconds = task.seconds;
     const auto known = left_behind_.find(key);
-    if (known == left_behind_.end()) {
+    const auto array = known == left_behind_.end() ? arrays_.end() : arrays_.find(known->second.array);
+    // Of a task that has ended no answer is awaited; one that it gave is found.
+    if (array == arrays_.end() || !array->second.watch.expects(known->second.task, key)) {
         fresh_.push_back(key);
         return cost_of(sector);
     }
-    sector.place = std::move(known->second);
-    left_behind_.erase(known);
+    sector.place = known->second;
     return cost_of(sector);
 }
 
@@ -206,8 +207,7 @@ void Dispatcher::finish(const Digest& key,
                         const std::string& log) {
     const auto found = sectors_.find(key);
     Sector sector = std::move(found->second);
-    if (!sector.place)
-        spent_.emplace_back(key, now());
+    spent_.push_back({key, sector.place ? sector.place->array : "", now()});
     settle(key, sector);
     sectors_.erase(found);
     for (const std::uint64_t id : sector.ids)

@@ -84,6 +84,12 @@ class Dispatcher {
         double seconds = 0;       // of one thread, that they take, as far as is known
         bool is_dry = false;      // nothing waits behind them
     };
+    // An answer that was delivered.
+    struct Spent {
+        Digest answer;
+        std::string array;
+        Time delivered;
+    };
     // A node that must not bake.
     struct Exclusion {
         Time until;
@@ -125,7 +131,7 @@ class Dispatcher {
     void ask_queue();
     [[nodiscard]] bool is_to_be_let_go(Array& array, const ClusterTask& task);
     void judge(const std::string& key, Array& array);
-    void try_again(const Array& array, const EndedTask& ended);
+    void try_again(const std::string& array_key, const Array& array, const EndedTask& ended);
     void close_arrays();
     void remove_spent_answers();
     void view_cluster();
@@ -147,10 +153,10 @@ class Dispatcher {
     std::map<Digest, Sector> sectors_;  // taken up, by the key of the answer
     std::vector<Digest> fresh_;   // of these, for which no answer has been looked for, in the order of baking
     std::array<Ready, 2> ready_;  // by priority
-    std::map<std::string, Array> arrays_;         // that are open
-    std::map<Digest, Place> left_behind_;         // in an earlier run's arrays, and not taken up yet
-    std::vector<std::pair<Digest, Time>> spent_;  // answers that were delivered, and when
-    std::map<std::string, Exclusion> excluded_;   // nodes
+    std::map<std::string, Array> arrays_;  // that are open
+    std::map<Digest, Place> left_behind_;  // in an earlier run's arrays, and not taken up yet
+    std::vector<Spent> spent_;
+    std::map<std::string, Exclusion> excluded_;  // nodes
     Costs costs_;
     std::optional<ClusterView> view_;
     Time viewed_;                // when it was asked for last

@@ -60,7 +60,7 @@ bool read_to_end(std::array<Output, 2>& outputs, Clock::time_point end) {
             return true;
         const milliseconds left = left_until(end);
         const int ready = ::poll(files.data(), files.size(), static_cast<int>(left.count()));
-        if (ready == 0 && left.count() == 0)
+        if (left.count() == 0)
             return false;
         for (std::size_t n = 0; ready > 0 && n < outputs.size(); ++n) {
             if (files[n].revents != 0 && !read_some(outputs[n]))
@@ -110,13 +110,13 @@ tl::expected<std::string, std::string> run_command(const std::vector<std::string
     if (!status) {
         ::kill(-*pid, SIGKILL);
         ::waitpid(*pid, nullptr, 0);
-        return tl::unexpected(fmt::format("{} was not done after {} ms", command[0], time_limit.count()));
     }
-    if (*status == 0)
+    if (status == 0)
         return std::move(outputs[0].text);
+    const std::string how =
+        status ? describe_exit(*status) : fmt::format("was not done after {} ms", time_limit.count());
     const std::string why = store::as_utf8(last_line(outputs[1].text));
-    return tl::unexpected(
-        fmt::format("{} {}{}{}", command[0], describe_exit(*status), why.empty() ? "" : ": ", why));
+    return tl::unexpected(fmt::format("{} {}{}{}", command[0], how, why.empty() ? "" : ": ", why));
 }
 
 }  // namespace drtv::executor

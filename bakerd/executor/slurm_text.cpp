@@ -70,8 +70,9 @@ std::optional<TaskState> state_of(std::string_view state, std::string_view reaso
 }  // namespace
 
 bool is_too_large(std::string_view sentence) {
-    constexpr std::array<std::string_view, 5> words = {"job array specification",
+    constexpr std::array<std::string_view, 6> words = {"job array specification",
                                                        "MaxSubmitJob",
+                                                       "job queue full",
                                                        "temporarily unable to accept job",
                                                        "Job violates accounting/QOS policy",
                                                        "Resource temporarily unavailable"};
@@ -96,11 +97,16 @@ std::optional<ClusterNode> parse_node(std::string_view row) {
     node.name = columns[0];
     node.threads = number<int>(columns[1]).value_or(0);
     node.memory_bytes = number<std::int64_t>(columns[2]).value_or(0) << 20;
-    // With a sign behind it the node does not answer, or sleeps.
-    const std::string_view state = columns[3];
-    node.is_up = state == "idle" || state == "mixed" || state == "allocated" || state == "completing";
+    std::string_view state = columns[3];
+    // A sign says more of it (sinfo(1)): "*" that it does not answer, "-", "+" and "@" nothing that matters,
+    // the others that it sleeps, and wakes for a task.
+    if (!state.empty() && std::string_view("-+@~#%").find(state.back()) != state.npos)
+        state.remove_suffix(1);
+    constexpr std::array<std::string_view, 5> up = {"idle", "mixed", "allocated", "completing", "planned"};
+    node.is_up = std::ranges::find(up, state) != up.end();
     if (!node.is_up)
-        node.reason = columns[4] == "none" ? std::string(state) : fmt::format("{}: {}", state, columns[4]);
+        node.reason =
+            columns[4] == "none" ? std::string(columns[3]) : fmt::format("{}: {}", columns[3], columns[4]);
     return node;
 }
 

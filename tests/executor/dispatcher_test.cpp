@@ -234,6 +234,31 @@ TEST_F(DispatcherTest, TheNextDaemonGoesOnWithTheArrays) {
     EXPECT_EQ(files("arrays"), 0u);
 }
 
+// Found by a review: what a task of the earlier run had, and will not answer, is nobody's.
+TEST_F(DispatcherTest, ATaskThatDiedBeforeItsSectorsWereAskedForAgainLeavesNoneBehind) {
+    add(40, 10);
+    pass(2s);
+    cluster.set_all(TaskState::running);
+    const auto batch = cluster.batch(0);
+    restart();
+    std::deque<SectorTask> later = std::exchange(queue, {});
+    pass(10s);
+    cluster.set(0, TaskState::lost);
+    pass(20s);
+    queue = std::move(later);
+    pass(10s);
+    ASSERT_EQ(cluster.arrays.size(), 2u);
+    EXPECT_EQ(sectors_of_last_array().size(), batch.size());
+    answer_all();
+    for (std::size_t task = 1; task < cluster.arrays[0].tasks; ++task) {
+        const worker::Batch left = worker::read_batch(test::file_of(cluster.arrays[0]), task).value();
+        for (const worker::BakeRequest& baked : left.sectors)
+            answer(baked, result(baked));
+    }
+    pass(10s);
+    expect_all_baked();
+}
+
 // Between the array's file and sbatch.
 TEST_F(DispatcherTest, AnArrayThatTheClusterNeverHeardOfGoesAgain) {
     add(40, 10);
@@ -432,6 +457,11 @@ TEST_F(DispatcherTest, ANodeOfAnotherBuildIsLeftOut) {
     for (ClusterNode& node : cluster.cluster.nodes)
         node.is_up = node.name == "node1";
     pass(1min);
+    add(1, 1, Priority::interactive);
+    pass(5s);
+    EXPECT_EQ(ends.size(), 0u) << "the others may come back";
+    cluster.cluster.nodes.resize(1);
+    pass(1min);
     add(3);
     pass(5s);
     EXPECT_NE(sentence(42).find("no node may bake"), std::string::npos) << sentence(42);
@@ -440,7 +470,7 @@ TEST_F(DispatcherTest, ANodeOfAnotherBuildIsLeftOut) {
     pass(15min);
     add(1, 1, Priority::interactive);
     pass(5s);
-    EXPECT_EQ(cluster.arrays.size(), 3u);
+    EXPECT_EQ(cluster.arrays.size(), 4u);
 }
 
 TEST_F(DispatcherTest, LostPreemptedAndCancelledTasksGoAgainTogether) {
