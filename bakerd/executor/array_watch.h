@@ -30,6 +30,7 @@ struct Patience {
 struct EndedTask {
     std::vector<Digest> unanswered;
     bool is_single = false;           // its batch was one sector
+    bool is_barren = false;           // it answered nothing
     std::optional<ClusterTask> last;  // what the queue said of it; nothing where it knows no such task
 };
 

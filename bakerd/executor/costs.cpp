@@ -16,7 +16,8 @@ worker::Digest Costs::kind_of(const worker::BakeRequest& request) {
 void Costs::learn(const worker::BakeRequest& request, const worker::TaskAnswer& answer) {
     std::int64_t& peak = peak_memory_[request.manifest];
     peak = std::max(peak, answer.peak_memory_bytes);
-    load_seconds_[request.manifest] = answer.load_seconds;
+    constexpr double load_weight = 0.1;
+    load_seconds_ += (load_seconds_ == 0 ? 1 : load_weight) * (answer.load_seconds - load_seconds_);
     // A rebake's seconds are those of a bake from nothing.
     const auto* result = std::get_if<worker::SectorResult>(&answer.what);
     if (result == nullptr || request.earlier)
@@ -30,18 +31,14 @@ void Costs::learn(const worker::BakeRequest& request, const worker::TaskAnswer& 
 
 void Costs::learn_too_little(const worker::BakeRequest& request, std::int64_t memory_bytes) {
     std::int64_t& peak = peak_memory_[request.manifest];
-    peak = std::max(peak, memory_bytes + memory_bytes / 2);
+    // Three attempts must reach what a large map needs.
+    peak = std::max(peak, 4 * memory_bytes);
 }
 
 double Costs::seconds(const worker::Digest& kind) const {
     const auto known = seconds_.find(kind);
     // A sector without probes takes no time that is worth a word; the cut needs some.
     return known == seconds_.end() ? 0 : std::max(known->second, 1e-4);
-}
-
-double Costs::load_seconds(const worker::BakeRequest& request) const {
-    const auto known = load_seconds_.find(request.manifest);
-    return known == load_seconds_.end() ? 0 : known->second;
 }
 
 std::int64_t Costs::memory_bytes(const worker::BakeRequest& request) const {

@@ -19,15 +19,15 @@ class Costs {
 
     // Of one thread, for a sector of that kind; 0: not known.
     [[nodiscard]] double seconds(const worker::Digest& kind) const;
-    // That a task for this map needs before it can bake; 0: not known.
-    [[nodiscard]] double load_seconds(const worker::BakeRequest& request) const;
+    // That tasks needed of late before they could bake; 0: not known.
+    [[nodiscard]] double load_seconds() const { return load_seconds_; }
     // That a task for this map should ask for; 0: not known.
     [[nodiscard]] std::int64_t memory_bytes(const worker::BakeRequest& request) const;
 
   private:
     std::map<worker::Digest, double> seconds_;            // by kind
     std::map<worker::Digest, std::int64_t> peak_memory_;  // by map
-    std::map<worker::Digest, double> load_seconds_;       // likewise
+    double load_seconds_ = 0;
 };
 
 }  // namespace drtv::executor

@@ -92,8 +92,13 @@ void Dispatcher::ask_queue() {
 // A requeued task waits until its old node would take it again: before that, the node drops it without a word
 // (cred_expire in slurm.conf(5)). One whose node is gone waits for nothing.
 bool Dispatcher::is_to_be_let_go(Array& array, const ClusterTask& task) {
-    if (task.state == TaskState::held)
-        return array.releases[task.number]++ < max_releases;
+    if (task.state == TaskState::held) {
+        const bool again = array.releases[task.number]++ < max_releases;
+        if (!again)
+            list_trouble_ =
+                fmt::format("a task is held: {} (scontrol release {}_{})", task.words, task.job, task.number);
+        return again;
+    }
     if (task.state != TaskState::delayed || task.node.empty())
         return false;
     if (now() >= viewed_ + options_.queue_every)
@@ -114,7 +119,7 @@ void Dispatcher::judge(const std::string& key, Array& array) {
     lost_ += lost;
     // Nodes may have gone with them.
     if (lost > 0)
-        next_view_ = now();
+        next_view_ = shaken_ = now();
     if (!ended.empty())
         spdlog::info("array {}: {} tasks ended with sectors to bake: {}",
                      key,
@@ -124,10 +129,28 @@ void Dispatcher::judge(const std::string& key, Array& array) {
         cluster_->cancel(idle);
 }
 
+// One of another build says so. One on which the tasks of several batches end without an answer lacks
+// something, and would draw all that wait. It gets no more for a while.
+bool Dispatcher::is_fault_of_node(const EndedTask& ended, const std::string& printed) {
+    constexpr std::size_t too_many = 3;
+    const ClusterTask& last = *ended.last;
+    if (last.state != TaskState::done || last.exit_status == 0)
+        return false;
+    if (ended.is_barren)
+        barren_[last.node].insert(ended.unanswered.front());
+    const bool is_fault =
+        last.exit_status == options_.differs_status || barren_[last.node].size() >= too_many;
+    if (is_fault)
+        excluded_[last.node] = {
+            now() + nodes_stay_excluded,
+            printed.empty() ? fmt::format("tasks end with status {}", last.exit_status) : printed};
+    return is_fault;
+}
+
 void Dispatcher::try_again(const std::string& array_key, const Array& array, const EndedTask& ended) {
     const auto state = ended.last ? ended.last->state : TaskState::lost;
     const bool was_refused = !ended.last && !array.was_taken && !array.watch.is_known();
-    const bool differs = state == TaskState::done && ended.last->exit_status == options_.differs_status;
+    bool is_of_node = false;
     std::string words = "the cluster lost its tasks";
     std::string log;
     if (ended.last) {
@@ -139,8 +162,7 @@ void Dispatcher::try_again(const std::string& array_key, const Array& array, con
                                  ended.last->exit_status,
                                  log),
                      printed);
-        if (differs)
-            excluded_[ended.last->node] = {now() + nodes_stay_excluded, printed};
+        is_of_node = is_fault_of_node(ended, printed);
     }
     for (const Digest& key : ended.unanswered) {
         const auto found = sectors_.find(key);
@@ -153,11 +175,11 @@ void Dispatcher::try_again(const std::string& array_key, const Array& array, con
         sector.place.reset();
         if (state == TaskState::out_of_memory)
             costs_.learn_too_little(sector.request, std::max(array.memory_bytes, std::int64_t{1} << 30));
-        if (state == TaskState::lost)
+        if (state == TaskState::lost || is_of_node)
             sector.losses += was_refused ? 0 : 1;
-        else if (!differs)
+        else
             ++sector.failures;
-        sector.alone = sector.alone || (!ended.is_single && !differs && state != TaskState::lost &&
+        sector.alone = sector.alone || (!ended.is_single && !is_of_node && state != TaskState::lost &&
                                         state != TaskState::cancelled);
         // Without the earlier result: it may be what the worker cannot bear.
         if (sector.failures > 0)

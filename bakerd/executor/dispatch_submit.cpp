@@ -17,6 +17,9 @@ std::size_t max_open(Priority priority) {
     return priority == Priority::interactive ? 8 : 2;
 }
 
+// After tasks were lost, nodes are looked at more often for so long.
+constexpr std::chrono::minutes nodes_come_back_in(2);
+
 std::string new_key() {
     std::random_device random;
     return fmt::format("drtv-{:08x}{:08x}", random(), random());
@@ -28,8 +31,8 @@ void Dispatcher::view_cluster() {
     auto view = cluster_->view();
     viewed_ = now();
     view_trouble_ = view ? "" : view.error();
-    const bool is_whole = view && std::ranges::all_of(view->nodes, &ClusterNode::is_up);
-    next_view_ = now() + (is_whole ? options_.cluster_every : 2 * options_.queue_every);
+    const bool is_shaken = !view || now() < shaken_ + nodes_come_back_in;
+    next_view_ = now() + (is_shaken ? 2 * options_.queue_every : options_.cluster_every);
     if (!view) {
         spdlog::warn("{}", view.error());
         return;
@@ -106,6 +109,13 @@ std::size_t Dispatcher::tasks_of_array() const {
     return std::min(std::max(2 * slots(), least), view_->max_tasks);
 }
 
+// A task that loads a large map should bake for longer, where nobody waits for it.
+double Dispatcher::batch_s(Priority priority) const {
+    if (priority == Priority::interactive)
+        return options_.batch_s;
+    return std::max(options_.batch_s, std::min(8 * costs_.load_seconds(), options_.max_batch_s));
+}
+
 std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
     Ready& ready = ready_[static_cast<std::size_t>(priority)];
     const std::size_t most = max_tasks_ > 0 ? std::min(max_tasks_, view_->max_tasks) : view_->max_tasks;
@@ -113,7 +123,6 @@ std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
     std::vector<Digest> keys;
     std::vector<double> seconds;
     bool is_known = true;
-    double load_s = 0;
     std::deque<Digest> left;
     // What lies here may have been given up, or lie twice.
     std::set<Digest> seen;
@@ -129,16 +138,12 @@ std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
             continue;
         }
         keys.push_back(key);
-        load_s = std::max(load_s, costs_.load_seconds(found->second.request));
         seconds.push_back(cost_of(found->second));
         is_known = is_known && seconds.back() > 0;
     }
     BatchRule rule;
-    rule.batch_s = options_.batch_s;
-    // A task that loads a large map should bake for longer, where nobody waits for it.
-    if (priority == Priority::nightly)
-        rule.batch_s = std::max(rule.batch_s, 8 * load_s);
-    rule.least_s = std::max(rule.least_s, 2 * load_s);
+    rule.batch_s = batch_s(priority);
+    rule.least_s = std::min(std::max(rule.least_s, 2 * costs_.load_seconds()), rule.batch_s);
     rule.threads = view_->task_threads;
     rule.slots = slots();
     rule.max_batches = most;

@@ -92,12 +92,12 @@ Dispatcher::Time Dispatcher::step() {
 }
 
 // What fills the next array: with more, a job that comes later would wait behind it.
-bool Dispatcher::is_enough(std::size_t sectors, double seconds) const {
+bool Dispatcher::is_enough(Priority priority, std::size_t sectors, double seconds) const {
     if (sectors < few_ready)
         return false;
     if (!view_ || seconds == 0 || sectors >= max_ready)
         return true;
-    return seconds >= static_cast<double>(tasks_of_array()) * options_.batch_s * view_->task_threads;
+    return seconds >= static_cast<double>(tasks_of_array()) * batch_s(priority) * view_->task_threads;
 }
 
 double Dispatcher::cost_of(const Sector& sector) const {
@@ -115,7 +115,7 @@ void Dispatcher::pull() {
         std::size_t sectors = ready.keys.size();
         double seconds = ready.seconds;
         ready.is_dry = false;
-        while (!ready.is_dry && !is_enough(sectors, seconds)) {
+        while (!ready.is_dry && !is_enough(priority, sectors, seconds)) {
             auto task = callbacks_.next(priority);
             ready.is_dry = !task;
             if (!task)
@@ -179,6 +179,7 @@ void Dispatcher::collect_answers() {
 }
 
 void Dispatcher::deliver(const Digest& key, const worker::TaskAnswer& answer) {
+    barren_.erase(answer.node);
     Sector& sector = sectors_.at(key);
     const auto* result = std::get_if<worker::SectorResult>(&answer.what);
     if (result == nullptr) {

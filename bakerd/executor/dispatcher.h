@@ -32,6 +32,7 @@ struct DispatchOptions {
     std::vector<std::string> task_command;  // what a task runs, but for its array's file
     int differs_status = -1;                // with which it ends on a node that must not bake for the daemon
     double batch_s = 90;                    // that a batch should take
+    double max_batch_s = 24 * 3600;         // and may, where the map takes long to load
     // Times between looks.
     std::chrono::milliseconds answers_every = std::chrono::milliseconds(1500);
     std::chrono::milliseconds queue_every = std::chrono::seconds(5);
@@ -115,7 +116,7 @@ class Dispatcher {
 
     // dispatcher.cpp: sectors and their answers.
     void pull();
-    [[nodiscard]] bool is_enough(std::size_t sectors, double seconds) const;
+    [[nodiscard]] bool is_enough(Priority priority, std::size_t sectors, double seconds) const;
     [[nodiscard]] double cost_of(const Sector& sector) const;
     [[nodiscard]] double take_up(SectorTask task);
     void collect_answers();
@@ -130,6 +131,7 @@ class Dispatcher {
     // dispatch_arrays.cpp: arrays and the queue.
     void ask_queue();
     [[nodiscard]] bool is_to_be_let_go(Array& array, const ClusterTask& task);
+    [[nodiscard]] bool is_fault_of_node(const EndedTask& ended, const std::string& printed);
     void judge(const std::string& key, Array& array);
     void try_again(const std::string& array_key, const Array& array, const EndedTask& ended);
     void close_arrays();
@@ -141,6 +143,7 @@ class Dispatcher {
     [[nodiscard]] bool may_bake(const ClusterNode& node) const;
     [[nodiscard]] std::size_t slots() const;
     [[nodiscard]] std::size_t tasks_of_array() const;
+    [[nodiscard]] double batch_s(Priority priority) const;
     [[nodiscard]] std::int64_t memory_for(std::span<const std::vector<Digest>> batches) const;
 
     DispatchOptions options_;
@@ -156,10 +159,12 @@ class Dispatcher {
     std::map<std::string, Array> arrays_;  // that are open
     std::map<Digest, Place> left_behind_;  // in an earlier run's arrays, and not taken up yet
     std::vector<Spent> spent_;
-    std::map<std::string, Exclusion> excluded_;  // nodes
+    std::map<std::string, std::set<Digest>> barren_;  // by node: batches that it failed since its last answer
+    std::map<std::string, Exclusion> excluded_;       // nodes
     Costs costs_;
     std::optional<ClusterView> view_;
     Time viewed_;                // when it was asked for last
+    Time shaken_;                // when tasks were lost last
     std::size_t max_tasks_ = 0;  // of the next array; 0: what the cluster allows
     int refusals_ = 0;           // in a row
     std::size_t lost_ = 0;       // tasks

@@ -26,6 +26,21 @@ std::string name_of(const ClusterTask& task) {
     return fmt::format("{}_{}", task.job, task.number);
 }
 
+// Lists of at most a hundred names, until the cluster does not do what it is asked: the rest has its turn
+// after the next list.
+template <class Command>
+void for_each_portion(std::span<const std::string> names, const Command& command) {
+    constexpr std::size_t at_once = 100;
+    while (!names.empty()) {
+        const auto portion = names.first(std::min(at_once, names.size()));
+        names = names.subspan(portion.size());
+        if (const auto said = command(fmt::format("{}", fmt::join(portion, ","))); !said) {
+            spdlog::warn("{}", said.error());
+            return;
+        }
+    }
+}
+
 }  // namespace
 
 tl::expected<std::string, std::string> Slurm::run(const std::vector<std::string>& command) const {
@@ -159,13 +174,14 @@ void Slurm::cancel(std::span<const ClusterTask> tasks) {
 }
 
 void Slurm::nudge(std::span<const ClusterTask> tasks) {
-    for (const ClusterTask& task : tasks) {
-        const auto said = task.state == TaskState::held
-                              ? run({"scontrol", "release", name_of(task)})
-                              : run({"scontrol", "update", "jobid=" + name_of(task), "StartTime=now"});
-        if (!said)
-            spdlog::warn("{}", said.error());
-    }
+    std::vector<std::string> held;
+    std::vector<std::string> delayed;
+    for (const ClusterTask& task : tasks)
+        (task.state == TaskState::held ? held : delayed).push_back(name_of(task));
+    for_each_portion(held, [this](const std::string& names) { return run({"scontrol", "release", names}); });
+    for_each_portion(delayed, [this](const std::string& names) {
+        return run({"scontrol", "update", "jobid=" + names, "StartTime=now"});
+    });
 }
 
 }  // namespace drtv::executor

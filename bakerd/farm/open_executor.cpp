@@ -22,6 +22,8 @@ store::Result<std::unique_ptr<executor::Executor>> open_executor(const ExecutorO
     dispatch.task_command = options.task_command;
     dispatch.differs_status = options.differs_status;
     dispatch.batch_s = options.batch_s;
+    if (options.slurm->time_limit_min > 0)
+        dispatch.max_batch_s = options.slurm->time_limit_min * 60.0 / 4;
     return executor::ClusterExecutor::open(std::make_unique<executor::Slurm>(*options.slurm),
                                            std::move(dispatch),
                                            std::move(local),

@@ -473,6 +473,21 @@ TEST_F(DispatcherTest, ANodeOfAnotherBuildIsLeftOut) {
     EXPECT_EQ(cluster.arrays.size(), 4u);
 }
 
+// It draws all tasks that wait, and bakes none.
+TEST_F(DispatcherTest, ANodeThatEndsAllTasksAtOnceIsLeftOut) {
+    add(400, 10);
+    pass(2s);
+    cluster.set_all(TaskState::done, 127);
+    pass(20s);
+    ASSERT_EQ(cluster.arrays.size(), 2u);
+    EXPECT_EQ(cluster.arrays[1].excluded_nodes, std::set<std::string>{"node1"});
+    EXPECT_EQ(sectors_of_last_array().size(), 400u);
+    EXPECT_LT(cluster.arrays[1].tasks, 100u) << "only those of the first two tasks go alone";
+    answer_all();
+    pass(10s);
+    expect_all_baked();
+}
+
 TEST_F(DispatcherTest, LostPreemptedAndCancelledTasksGoAgainTogether) {
     for (const TaskState state : {TaskState::lost, TaskState::cancelled}) {
         add(20);
@@ -529,6 +544,8 @@ TEST_F(DispatcherTest, TasksOfADeadNodeAreLetGoAndHeldOnesThreeTimes) {
     const std::string& key = cluster.arrays[0].key;
     EXPECT_GE(std::ranges::count(cluster.nudged, key + " 0"), 10);
     EXPECT_EQ(dispatcher->state().tasks_lost, 2u);
+    EXPECT_NE(dispatcher->state().trouble.find("a task is held"), std::string::npos)
+        << dispatcher->state().trouble;
     EXPECT_EQ(dispatcher->state().nodes_up, 3u);
     EXPECT_EQ(dispatcher->state().tasks_running, cluster.arrays[0].tasks - 2);
     EXPECT_EQ(std::ranges::count(cluster.nudged, key + " 1"), 3) << "who holds it again means it";
