@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 #include <random>
 
 namespace drtv::executor {
@@ -116,13 +115,13 @@ double Dispatcher::batch_s(Priority priority) const {
     return std::max(options_.batch_s, std::min(8 * costs_.load_seconds(), options_.max_batch_s));
 }
 
-std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
+Dispatcher::Cut Dispatcher::cut(Priority priority) {
     Ready& ready = ready_[static_cast<std::size_t>(priority)];
     const std::size_t most = max_tasks_ > 0 ? std::min(max_tasks_, view_->max_tasks) : view_->max_tasks;
     std::vector<std::vector<Digest>> batches;
     std::vector<Digest> keys;
     std::vector<double> seconds;
-    bool is_known = true;
+    std::vector<Digest> unknown;
     std::deque<Digest> left;
     // What lies here may have been given up, or lie twice.
     std::set<Digest> seen;
@@ -137,9 +136,10 @@ std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
                 left.push_back(key);
             continue;
         }
-        keys.push_back(key);
-        seconds.push_back(cost_of(found->second));
-        is_known = is_known && seconds.back() > 0;
+        const double cost = cost_of(found->second);
+        (cost > 0 ? keys : unknown).push_back(key);
+        if (cost > 0)
+            seconds.push_back(cost);
     }
     BatchRule rule;
     rule.batch_s = batch_s(priority);
@@ -151,13 +151,16 @@ std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
         rule.max_batches = std::min(most, tasks_of_array());
     rule.max_batches -= std::min(rule.max_batches, batches.size());
     rule.is_last = ready.is_dry;
-    if (!is_known) {
+    const bool is_pilot = keys.empty();
+    if (is_pilot) {
         // A few first, which tell what the others cost.
-        std::ranges::fill(seconds, 1.0);
+        keys.swap(unknown);
+        seconds.assign(keys.size(), 1.0);
         rule.batch_s = 0;
         rule.is_last = false;
-        const bool is_learning = std::ranges::any_of(
-            arrays_, [&](const auto& array) { return array.second.priority == priority; });
+        const bool is_learning = std::ranges::any_of(arrays_, [&](const auto& array) {
+            return array.second.is_pilot && array.second.priority == priority;
+        });
         rule.max_batches = is_learning ? 0 : std::min(rule.max_batches, 2 * rule.slots);
     }
     std::size_t begin = 0;
@@ -167,11 +170,11 @@ std::vector<std::vector<Digest>> Dispatcher::cut(Priority priority) {
         begin = end;
     }
     left.insert(left.end(), keys.begin() + static_cast<std::ptrdiff_t>(begin), keys.end());
-    ready.seconds =
-        is_known ? std::accumulate(seconds.begin() + static_cast<std::ptrdiff_t>(begin), seconds.end(), 0.0)
-                 : 0;
-    ready.keys = std::move(left);
-    return batches;
+    left.insert(left.end(), unknown.begin(), unknown.end());
+    ready = {std::move(left), 0, 0, ready.is_dry};
+    for (const Digest& key : ready.keys)
+        count(key, ready);
+    return {std::move(batches), is_pilot};
 }
 
 void Dispatcher::submit(Priority priority) {
@@ -189,7 +192,7 @@ void Dispatcher::submit(Priority priority) {
         std::ranges::count_if(arrays_, [&](const auto& array) { return array.second.priority == priority; });
     if (static_cast<std::size_t>(open) >= max_open(priority))
         return;
-    std::vector<std::vector<Digest>> batches = cut(priority);
+    auto [batches, is_pilot] = cut(priority);
     if (batches.empty())
         return;
     ClusterArray array;
@@ -223,7 +226,8 @@ void Dispatcher::submit(Priority priority) {
     ArrayWatch watch(batches, options_.patience, now());
     arrays_.emplace(
         array.key,
-        Array{priority, std::move(batches), std::move(watch), array.memory_bytes, taken.has_value()});
+        Array{
+            priority, std::move(batches), std::move(watch), array.memory_bytes, taken.has_value(), is_pilot});
     submit_trouble_ = taken ? "" : taken.error().sentence;
     if (taken) {
         refusals_ = 0;

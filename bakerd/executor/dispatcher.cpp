@@ -92,12 +92,19 @@ Dispatcher::Time Dispatcher::step() {
 }
 
 // What fills the next array: with more, a job that comes later would wait behind it.
-bool Dispatcher::is_enough(Priority priority, std::size_t sectors, double seconds) const {
+bool Dispatcher::is_enough(Priority priority, const Ready& ready, std::size_t sectors) const {
     if (sectors < few_ready)
         return false;
-    if (!view_ || seconds == 0 || sectors >= max_ready)
+    if (!view_ || ready.unknown >= few_ready || sectors >= max_ready)
         return true;
-    return seconds >= static_cast<double>(tasks_of_array()) * batch_s(priority) * view_->task_threads;
+    return ready.seconds >= static_cast<double>(tasks_of_array()) * batch_s(priority) * view_->task_threads;
+}
+
+void Dispatcher::count(const Digest& key, Ready& ready) const {
+    const auto found = sectors_.find(key);
+    const double cost = found == sectors_.end() ? 0 : cost_of(found->second);
+    ready.seconds += cost;
+    ready.unknown += static_cast<std::size_t>(cost == 0);
 }
 
 double Dispatcher::cost_of(const Sector& sector) const {
@@ -108,29 +115,31 @@ void Dispatcher::pull() {
     for (const Priority priority : {Priority::interactive, Priority::nightly}) {
         Ready& ready = ready_[index_of(priority)];
         // Their costs may have become known since.
-        for (const Digest& key : ready.seconds == 0 ? ready.keys : std::deque<Digest>()) {
-            if (const auto found = sectors_.find(key); found != sectors_.end())
-                ready.seconds += cost_of(found->second);
+        if (ready.unknown > 0) {
+            ready.seconds = 0;
+            ready.unknown = 0;
+            for (const Digest& key : ready.keys)
+                count(key, ready);
         }
+        Ready ahead{{}, ready.seconds, ready.unknown, false};
         std::size_t sectors = ready.keys.size();
-        double seconds = ready.seconds;
-        ready.is_dry = false;
-        while (!ready.is_dry && !is_enough(priority, sectors, seconds)) {
+        while (!ahead.is_dry && !is_enough(priority, ahead, sectors)) {
             auto task = callbacks_.next(priority);
-            ready.is_dry = !task;
-            if (!task)
-                break;
+            ahead.is_dry = !task;
             const std::size_t waiting = fresh_.size();
-            const double cost = take_up(std::move(*task));
+            if (task)
+                take_up(std::move(*task));
             // One that an earlier run's array has is at work.
-            sectors += fresh_.size() - waiting;
-            seconds += fresh_.size() > waiting ? cost : 0;
+            if (fresh_.size() > waiting) {
+                ++sectors;
+                count(fresh_.back(), ahead);
+            }
         }
+        ready.is_dry = ahead.is_dry;
     }
 }
 
-// Gives what baking it will cost.
-double Dispatcher::take_up(SectorTask task) {
+void Dispatcher::take_up(SectorTask task) {
     const Digest key = worker::answer_key(task.request);
     const auto [entry, is_new] = sectors_.try_emplace(key);
     Sector& sector = entry->second;
@@ -139,7 +148,7 @@ double Dispatcher::take_up(SectorTask task) {
         // Two jobs want the same, and one of them was opened again.
         if (!sector.place)
             fresh_.push_back(key);
-        return cost_of(sector);
+        return;
     }
     sector.request = std::move(task.request);
     sector.kind = Costs::kind_of(sector.request);
@@ -150,10 +159,9 @@ double Dispatcher::take_up(SectorTask task) {
     // Of a task that has ended no answer is awaited; one that it gave is found.
     if (array == arrays_.end() || !array->second.watch.expects(known->second.task, key)) {
         fresh_.push_back(key);
-        return cost_of(sector);
+        return;
     }
     sector.place = known->second;
-    return cost_of(sector);
 }
 
 void Dispatcher::collect_answers() {
@@ -174,7 +182,7 @@ void Dispatcher::collect_answers() {
             continue;
         Ready& ready = ready_[index_of(left->second.priority)];
         ready.keys.push_back(key);
-        ready.seconds += cost_of(left->second);
+        count(key, ready);
     }
 }
 

@@ -83,6 +83,7 @@ class Dispatcher {
     struct Ready {
         std::deque<Digest> keys;  // in the order of baking; some may have been given up
         double seconds = 0;       // of one thread, that they take, as far as is known
+        std::size_t unknown = 0;  // of which that is not known
         bool is_dry = false;      // nothing waits behind them
     };
     // An answer that was delivered.
@@ -102,6 +103,7 @@ class Dispatcher {
         ArrayWatch watch;
         std::int64_t memory_bytes = 0;
         bool was_taken = true;                  // the cluster did not refuse it
+        bool is_pilot = false;                  // it tells what others cost
         std::map<std::size_t, int> releases{};  // of tasks that were held
     };
 
@@ -116,9 +118,10 @@ class Dispatcher {
 
     // dispatcher.cpp: sectors and their answers.
     void pull();
-    [[nodiscard]] bool is_enough(Priority priority, std::size_t sectors, double seconds) const;
+    [[nodiscard]] bool is_enough(Priority priority, const Ready& ready, std::size_t sectors) const;
+    void count(const Digest& key, Ready& ready) const;
     [[nodiscard]] double cost_of(const Sector& sector) const;
-    [[nodiscard]] double take_up(SectorTask task);
+    void take_up(SectorTask task);
     void collect_answers();
     void deliver(const Digest& key, const worker::TaskAnswer& answer);
     void finish(const Digest& key,
@@ -138,7 +141,11 @@ class Dispatcher {
     void remove_spent_answers();
     void view_cluster();
     void submit(Priority priority);
-    [[nodiscard]] std::vector<std::vector<Digest>> cut(Priority priority);
+    struct Cut {
+        std::vector<std::vector<Digest>> batches;
+        bool is_pilot = false;
+    };
+    [[nodiscard]] Cut cut(Priority priority);
     void refuse_all(Priority priority);
     [[nodiscard]] bool may_bake(const ClusterNode& node) const;
     [[nodiscard]] std::size_t slots() const;

@@ -216,6 +216,22 @@ TEST_F(DispatcherTest, AnArrayOfAJobThatIsNewFillsTheCluster) {
     EXPECT_EQ(cluster.batch(15).size(), 60u);
 }
 
+// Of another map, or with other settings.
+TEST_F(DispatcherTest, SectorsOfUnknownCostDoNotHoldTheOthersUp) {
+    add(300, 10);
+    add(60, 0);
+    pass(5s);
+    ASSERT_EQ(cluster.arrays.size(), 2u);
+    EXPECT_EQ(sectors_of_last_array().size(), 16u) << "a pilot, of which two for each thread";
+    EXPECT_EQ(*sectors_of_last_array().begin(), 300) << "of those whose cost is not known";
+    EXPECT_GE(cluster.arrays[0].tasks, 16u);
+    answer_all();
+    pass(15s);
+    EXPECT_EQ(ends.size(), 16u);
+    ASSERT_EQ(cluster.arrays.size(), 3u) << "the first array is still at work";
+    EXPECT_EQ(sectors_of_last_array().size(), 44u);
+}
+
 TEST_F(DispatcherTest, TheNextDaemonGoesOnWithTheArrays) {
     add(40, 10);
     pass(2s);
