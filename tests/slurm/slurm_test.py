@@ -154,7 +154,7 @@ class Short(SlurmCase):
 
     def test_a_node_and_the_daemon_die(self):
         field = write_field(self.farm.path("map/field.gltf"), 10)
-        settings = ["--preset", "draft", "--set", "rays=1024"]
+        settings = ["--preset", "draft", "--set", "rays=8192"]
         local = self.farm.daemon("local_data")
         self.bake(local, "submit", field, *settings, "--wait", "--yes")
         daemon = self.slurm_daemon("--slurm-batch", "4")
