@@ -26,7 +26,7 @@ farm::ExecutorOptions executor_options(const ServeOptions& options,
     farm::ExecutorOptions executor;
     executor.worker_command = {self, "worker", "--blobs", blob_folder, "--threads", std::to_string(threads)};
     executor.threads = threads;
-    if (options.executor != "slurm")
+    if (!options.is_on_slurm())
         return executor;
     executor.slurm = options.slurm;
     executor.batch_s = options.batch_s;
@@ -82,9 +82,9 @@ cli::Result<cli::ExitCode> serve(const ServeOptions& options) {
     const int threads = options.threads > 0
                             ? options.threads
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    if (options.executor == "slurm" && options.store.empty())
-        return cli::fail(cli::exit_usage, "--executor slurm needs --store, a folder that all nodes see");
-    if (options.executor == "slurm") {
+    if (options.is_on_slurm()) {
+        if (options.store.empty())
+            return cli::fail(cli::exit_usage, "--executor slurm needs --store, a folder that all nodes see");
         if (const auto found = executor::run_command({"sbatch", "--version"}, std::chrono::seconds(20));
             !found)
             return cli::fail(cli::exit_unreadable,
@@ -108,13 +108,13 @@ cli::Result<cli::ExitCode> serve(const ServeOptions& options) {
     spdlog::info("bakerd listens on {}, keeps its data in {}, bakes {}",
                  (*server)->address(),
                  options.data,
-                 options.executor == "slurm" ? "on Slurm" : fmt::format("on {} threads", threads));
+                 options.is_on_slurm() ? "on Slurm" : fmt::format("on {} threads", threads));
 
     int signal = 0;
     sigwait(&signals, &signal);
     spdlog::info("stopping: {}",
-                 options.executor == "slurm" ? "tasks on the cluster go on"
-                                             : "the running sectors are finished or put back");
+                 options.is_on_slurm() ? "tasks on the cluster go on"
+                                       : "the running sectors are finished or put back");
     // The farm first: calls that wait for it get their answer, and the server need not wait for them.
     (*farm)->stop(std::chrono::seconds(10));
     (*server)->stop();

@@ -25,6 +25,8 @@ struct ServeOptions {
     int threads = 0;
     std::int64_t cache_bytes = farm::Farm::Options{}.cache_bytes;
     service::TlsFiles tls;
+
+    [[nodiscard]] bool is_on_slurm() const { return executor == "slurm"; }
 };
 
 // `chosen` is called when the line names this command.

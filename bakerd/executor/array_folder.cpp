@@ -17,11 +17,8 @@ namespace fs = std::filesystem;
 
 store::Result<ArrayFolder> ArrayFolder::open(const std::string& store_folder, const std::string& owner) {
     ArrayFolder folder(fmt::format("{}/arrays/{}", store_folder, owner));
-    std::error_code code;
-    fs::create_directories(folder.folder_ + "/tmp", code);
-    if (code)
-        return store::fail(store::ErrorCode::internal,
-                           fmt::format("cannot make the folder {}/tmp: {}", folder.folder_, code.message()));
+    if (auto made = store::make_folder(folder.folder_ + "/tmp"); !made)
+        return tl::unexpected(made.error());
     return folder;
 }
 
@@ -45,9 +42,8 @@ std::vector<std::pair<std::string, worker::ArrayFile>> ArrayFolder::all() const 
         if (key == "tmp")
             continue;
         const auto bytes = store::read_all(entry->path().string());
-        auto array = bytes
-                         ? worker::decode_array({reinterpret_cast<const char*>(bytes->data()), bytes->size()})
-                         : tl::unexpected(bytes.error().message);
+        auto array = bytes ? worker::decode_array(store::text_of_bytes(*bytes))
+                           : tl::unexpected(bytes.error().message);
         if (!array)
             spdlog::warn("array {}: {}", key, array.error());
         arrays.emplace_back(key, array ? std::move(*array) : worker::ArrayFile{});

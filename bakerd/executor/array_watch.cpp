@@ -80,11 +80,8 @@ std::vector<EndedTask> ArrayWatch::take_ended(Time now) {
         if (task.ended ? now - *task.ended < patience_for(*task.last) : now - task.heard < patience_.silence)
             continue;
         task.is_taken = true;
-        const bool is_barren = task.unanswered.size() == task.sectors;
-        ended.push_back({std::exchange(task.unanswered, {}),
-                         task.sectors == 1,
-                         is_barren,
-                         task.ended ? task.last : std::nullopt});
+        ended.push_back(
+            {std::exchange(task.unanswered, {}), task.sectors, task.ended ? task.last : std::nullopt});
     }
     return ended;
 }

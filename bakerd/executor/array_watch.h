@@ -29,8 +29,7 @@ struct Patience {
 // A task that will not answer any more.
 struct EndedTask {
     std::vector<Digest> unanswered;
-    bool is_single = false;           // its batch was one sector
-    bool is_barren = false;           // it answered nothing
+    std::size_t sectors = 0;          // of its batch
     std::optional<ClusterTask> last;  // what the queue said of it; nothing where it knows no such task
 };
 

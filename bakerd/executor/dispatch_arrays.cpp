@@ -7,7 +7,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <string_view>
 
 namespace drtv::executor {
 namespace {
@@ -19,13 +18,7 @@ constexpr std::chrono::minutes nodes_stay_excluded(10);
 // The sentence with which a task's log ends; it may be longer than what fits into a line of ours.
 std::string last_words(const std::string& log) {
     const auto bytes = store::read_all(log);
-    if (!bytes)
-        return "";
-    std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    while (text.ends_with('\n'))
-        text.remove_suffix(1);
-    const std::size_t begin = text.rfind('\n');
-    return store::as_utf8((begin == text.npos ? text : text.substr(begin + 1)).substr(0, 300));
+    return bytes ? store::as_utf8(store::last_line(store::text_of_bytes(*bytes)).substr(0, 300)) : "";
 }
 
 std::string join(const std::string& what, const std::string& words) {
@@ -136,7 +129,7 @@ bool Dispatcher::is_fault_of_node(const EndedTask& ended, const std::string& pri
     const ClusterTask& last = *ended.last;
     if (last.state != TaskState::done || last.exit_status == 0)
         return false;
-    if (ended.is_barren)
+    if (ended.unanswered.size() == ended.sectors)
         barren_[last.node].insert(ended.unanswered.front());
     const bool is_fault =
         last.exit_status == options_.differs_status || barren_[last.node].size() >= too_many;
@@ -179,7 +172,7 @@ void Dispatcher::try_again(const std::string& array_key, const Array& array, con
             sector.losses += was_refused ? 0 : 1;
         else
             ++sector.failures;
-        sector.alone = sector.alone || (!ended.is_single && !is_of_node && state != TaskState::lost &&
+        sector.alone = sector.alone || (ended.sectors > 1 && !is_of_node && state != TaskState::lost &&
                                         state != TaskState::cancelled);
         // Without the earlier result: it may be what the worker cannot bear.
         if (sector.failures > 0)

@@ -74,7 +74,7 @@ bool Dispatcher::may_bake(const ClusterNode& node) const {
 void Dispatcher::refuse_all(Priority priority) {
     const auto& [node, exclusion] = *excluded_.begin();
     const std::string why = fmt::format("no node may bake; of {}: {}", node, exclusion.why);
-    for (const Digest& key : std::exchange(ready_[static_cast<std::size_t>(priority)], {}).keys) {
+    for (const Digest& key : std::exchange(ready(priority), {}).keys) {
         if (const auto found = sectors_.find(key); found != sectors_.end() && !found->second.place)
             finish(key, tl::unexpected(worker::RequestFailure{why, false}));
     }
@@ -116,7 +116,7 @@ double Dispatcher::batch_s(Priority priority) const {
 }
 
 Dispatcher::Cut Dispatcher::cut(Priority priority) {
-    Ready& ready = ready_[static_cast<std::size_t>(priority)];
+    Ready& ready = this->ready(priority);
     const std::size_t most = max_tasks_ > 0 ? std::min(max_tasks_, view_->max_tasks) : view_->max_tasks;
     std::vector<std::vector<Digest>> batches;
     std::vector<Digest> keys;
@@ -178,7 +178,7 @@ Dispatcher::Cut Dispatcher::cut(Priority priority) {
 }
 
 void Dispatcher::submit(Priority priority) {
-    if (!view_ || now() < next_submit_ || ready_[static_cast<std::size_t>(priority)].keys.empty())
+    if (!view_ || now() < next_submit_ || ready(priority).keys.empty())
         return;
     // A node that is down for a moment may be the one that can.
     const bool none_may =

@@ -29,10 +29,6 @@ void sweep(const DispatchOptions& options) {
     store::remove_old_files(store + "/logs", logs_stay);
 }
 
-std::size_t index_of(Priority priority) {
-    return static_cast<std::size_t>(priority);
-}
-
 }  // namespace
 
 store::Result<Dispatcher> Dispatcher::open(DispatchOptions options,
@@ -113,7 +109,7 @@ double Dispatcher::cost_of(const Sector& sector) const {
 
 void Dispatcher::pull() {
     for (const Priority priority : {Priority::interactive, Priority::nightly}) {
-        Ready& ready = ready_[index_of(priority)];
+        Ready& ready = this->ready(priority);
         // Their costs may have become known since.
         if (ready.unknown > 0) {
             ready.seconds = 0;
@@ -180,7 +176,7 @@ void Dispatcher::collect_answers() {
         const auto left = sectors_.find(key);
         if (left == sectors_.end() || left->second.place)
             continue;
-        Ready& ready = ready_[index_of(left->second.priority)];
+        Ready& ready = this->ready(left->second.priority);
         ready.keys.push_back(key);
         count(key, ready);
     }

@@ -116,6 +116,8 @@ class Dispatcher {
     void load_arrays();
     [[nodiscard]] Time now() const { return options_.clock(); }
 
+    [[nodiscard]] Ready& ready(Priority priority) { return ready_[static_cast<std::size_t>(priority)]; }
+
     // dispatcher.cpp: sectors and their answers.
     void pull();
     [[nodiscard]] bool is_enough(Priority priority, const Ready& ready, std::size_t sectors) const;

@@ -13,7 +13,6 @@
 #include <cerrno>
 #include <csignal>
 #include <optional>
-#include <string_view>
 #include <thread>
 
 namespace drtv::executor {
@@ -81,13 +80,6 @@ std::optional<int> wait_until(pid_t pid, Clock::time_point end) {
     }
 }
 
-std::string last_line(std::string_view text) {
-    while (!text.empty() && text.back() == '\n')
-        text.remove_suffix(1);
-    const std::size_t begin = text.rfind('\n');
-    return std::string(begin == text.npos ? text : text.substr(begin + 1));
-}
-
 }  // namespace
 
 tl::expected<std::string, std::string> run_command(const std::vector<std::string>& command,
@@ -115,7 +107,7 @@ tl::expected<std::string, std::string> run_command(const std::vector<std::string
         return std::move(outputs[0].text);
     const std::string how =
         status ? describe_exit(*status) : fmt::format("was not done after {} ms", time_limit.count());
-    const std::string why = store::as_utf8(last_line(outputs[1].text));
+    const std::string why = store::as_utf8(store::last_line(outputs[1].text));
     return tl::unexpected(fmt::format("{} {}{}{}", command[0], how, why.empty() ? "" : ": ", why));
 }
 

@@ -82,11 +82,12 @@ tl::expected<void, Refusal> Slurm::submit(const ClusterArray& array) {
     const auto said = run(command);
     if (!said)
         return tl::unexpected(Refusal{said.error(), is_too_large(said.error())});
-    if (!is_job_number(*said))
+    const auto job = job_number(*said);
+    if (!job)
         return tl::unexpected(
             Refusal{fmt::format("sbatch gave no job's number, but {:?}", said->substr(0, 80)), false});
     if (array.priority == Priority::nightly)
-        step_back(said->substr(0, said->find_first_of(";\n")));
+        step_back(*job);
     return {};
 }
 
@@ -109,7 +110,7 @@ tl::expected<std::vector<ClusterTask>, std::string> Slurm::list(std::span<const 
     if (!said)
         return Failure(said.error());
     std::vector<ClusterTask> tasks;
-    for (const std::string_view row : lines_of(*said)) {
+    for (const std::string_view row : rows_of(*said)) {
         auto task = parse_task(row);
         // Half of a list would look as if the other tasks were gone.
         if (!task)
@@ -137,7 +138,7 @@ tl::expected<ClusterView, std::string> Slurm::view() {
     view.max_tasks = std::clamp(
         configured(*config, "max_array_tasks").value_or(view.max_tasks), std::size_t{1}, view.max_tasks);
     std::set<std::string> known;
-    for (const std::string_view row : lines_of(*nodes)) {
+    for (const std::string_view row : rows_of(*nodes)) {
         auto node = parse_node(row);
         // A node stands in a row for each of its partitions.
         if (node && known.insert(node->name).second)

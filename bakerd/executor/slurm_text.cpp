@@ -1,5 +1,7 @@
 #include "bakerd/executor/slurm_text.h"
 
+#include "bakerd/store/text_bytes.h"
+
 #include <fmt/format.h>
 #include <sys/wait.h>
 
@@ -12,11 +14,11 @@
 namespace drtv::executor {
 namespace {
 
-std::vector<std::string_view> split(std::string_view text, char at) {
-    std::vector<std::string_view> parts;
-    for (const auto part : std::views::split(text, at))
-        parts.emplace_back(part.begin(), part.end());
-    return parts;
+std::vector<std::string_view> columns_of(std::string_view row) {
+    std::vector<std::string_view> columns;
+    for (const auto column : std::views::split(row, '|'))
+        columns.emplace_back(column.begin(), column.end());
+    return columns;
 }
 
 template <class Number>
@@ -90,7 +92,7 @@ std::optional<std::size_t> configured(std::string_view text, std::string_view na
 }
 
 std::optional<ClusterNode> parse_node(std::string_view row) {
-    const std::vector<std::string_view> columns = split(row, '|');
+    const std::vector<std::string_view> columns = columns_of(row);
     if (columns.size() != 5)
         return std::nullopt;
     ClusterNode node;
@@ -110,14 +112,15 @@ std::optional<ClusterNode> parse_node(std::string_view row) {
     return node;
 }
 
-bool is_job_number(std::string_view text) {
-    return number<std::int64_t>(text.substr(0, text.find_first_of(";\n"))).has_value();
+std::optional<std::string> job_number(std::string_view text) {
+    const std::string_view job = text.substr(0, text.find_first_of(";\n"));
+    return number<std::int64_t>(job) ? std::optional(std::string(job)) : std::nullopt;
 }
 
-std::vector<std::string_view> lines_of(std::string_view text) {
-    std::vector<std::string_view> lines = split(text, '\n');
-    std::erase(lines, std::string_view());
-    return lines;
+std::vector<std::string_view> rows_of(std::string_view text) {
+    std::vector<std::string_view> rows = store::lines_of(text);
+    std::erase(rows, std::string_view());
+    return rows;
 }
 
 std::string quote(const std::string& argument) {
@@ -128,7 +131,7 @@ std::string quote(const std::string& argument) {
 }
 
 std::optional<ClusterTask> parse_task(std::string_view row) {
-    const std::vector<std::string_view> columns = split(row, '|');
+    const std::vector<std::string_view> columns = columns_of(row);
     if (columns.size() < 7)
         return std::nullopt;
     const auto index = number<std::size_t>(columns[2]);

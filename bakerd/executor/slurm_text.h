@@ -20,13 +20,14 @@ namespace drtv::executor {
 // The value of "Name = value" in what scontrol shows.
 [[nodiscard]] std::optional<std::size_t> configured(std::string_view text, std::string_view name);
 
-// A job's number, "<job>" or "<job>;<cluster>".
-[[nodiscard]] bool is_job_number(std::string_view text);
+// Of "<job>" or "<job>;<cluster>"; nothing where it is none.
+[[nodiscard]] std::optional<std::string> job_number(std::string_view text);
 
 // A refusal, as Slurm words it (its error numbers' sentences), that fewer tasks may pass.
 [[nodiscard]] bool is_too_large(std::string_view sentence);
 
-[[nodiscard]] std::vector<std::string_view> lines_of(std::string_view text);
+// Lines that are not empty.
+[[nodiscard]] std::vector<std::string_view> rows_of(std::string_view text);
 
 // For a shell.
 [[nodiscard]] std::string quote(const std::string& argument);

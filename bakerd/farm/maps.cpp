@@ -60,7 +60,7 @@ store::Result<MapView> Maps::get(const Digest& id) {
     const auto bytes = blobs_.get(id);
     if (!bytes)
         return tl::unexpected(bytes.error());
-    auto manifest = store::decode_manifest({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    auto manifest = store::decode_manifest(store::text_of_bytes(*bytes));
     if (!manifest)
         return tl::unexpected(manifest.error());
     return MapView{id, std::move(*manifest), std::move(*summary)};

@@ -1,6 +1,7 @@
 #include "bakerd/farm/sector_log.h"
 
 #include "bakerd/store/durable_file.h"
+#include "bakerd/store/text_bytes.h"
 
 #include <fmt/format.h>
 
@@ -39,12 +40,7 @@ store::Result<SectorLog> read_sector_log(const std::string& store_folder,
     if (!bytes)
         return store::fail(store::ErrorCode::not_found, bytes.error().message);
     SectorLog log{row.node, row.log, {}};
-    std::vector<std::string_view> lines;
-    std::string_view left(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    while (!left.empty()) {
-        lines.push_back(left.substr(0, left.find('\n')));
-        left.remove_prefix(std::min(lines.back().size() + 1, left.size()));
-    }
+    const std::vector<std::string_view> lines = store::lines_of(store::text_of_bytes(*bytes));
     for (std::size_t n = 0; n < lines.size(); ++n) {
         const bool is_last = row.state == SectorState::failed && n + last_lines >= lines.size();
         if (is_last || lines[n].find(name) != std::string_view::npos)

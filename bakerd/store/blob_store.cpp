@@ -17,11 +17,8 @@ namespace fs = std::filesystem;
 
 Result<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& folder) {
     for (const char* part : {"objects", "tmp", "uploads"}) {
-        std::error_code code;
-        fs::create_directories(folder + "/" + part, code);
-        if (code)
-            return fail(ErrorCode::internal,
-                        fmt::format("cannot make the folder {}/{}: {}", folder, part, code.message()));
+        if (auto made = make_folder(folder + "/" + part); !made)
+            return tl::unexpected(made.error());
     }
     return std::unique_ptr<BlobStore>(new BlobStore(folder));
 }

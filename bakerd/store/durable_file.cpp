@@ -10,6 +10,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace drtv::store {
 namespace {
@@ -30,6 +32,14 @@ tl::unexpected<Error> file_error(const std::string& what, const std::string& pat
     const ErrorCode kind =
         code == ENOSPC || code == EDQUOT ? ErrorCode::resource_exhausted : ErrorCode::internal;
     return fail(kind, fmt::format("cannot {} {}: {}", what, path, std::strerror(code)));
+}
+
+Result<void> make_folder(const std::string& path) {
+    std::error_code code;
+    std::filesystem::create_directories(path, code);
+    if (code)
+        return fail(ErrorCode::internal, fmt::format("cannot make the folder {}: {}", path, code.message()));
+    return {};
 }
 
 bool write_all(int fd, std::span<const std::uint8_t> bytes) {

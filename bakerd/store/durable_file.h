@@ -15,6 +15,9 @@ namespace drtv::store {
 // A failure by errno: "cannot <what> <path>: why".
 [[nodiscard]] tl::unexpected<Error> file_error(const std::string& what, const std::string& path);
 
+// With those above it, where they are missing.
+[[nodiscard]] Result<void> make_folder(const std::string& path);
+
 // False and errno where not all bytes could be written.
 [[nodiscard]] bool write_all(int fd, std::span<const std::uint8_t> bytes);
 

@@ -24,7 +24,7 @@ std::string host_name() {
 
 // In which a process's number means this process: machines and containers may have one name, and a machine
 // that has started again gives its numbers again.
-std::string machine() {
+std::string find_machine() {
     std::ifstream file("/proc/sys/kernel/random/boot_id");
     std::string boot;
     std::getline(file, boot);
@@ -33,12 +33,16 @@ std::string machine() {
     return fmt::format("{}-{}-{}", host_name(), boot.substr(0, 8), is_known ? processes.st_ino : 0);
 }
 
+const std::string& machine() {
+    static const std::string here = find_machine();
+    return here;
+}
+
 }  // namespace
 
 std::string temporary_name() {
     static std::atomic<std::uint64_t> counter{0};
-    static const std::string here = machine();
-    return fmt::format("{}.{}.{}", here, ::getpid(), counter++);
+    return fmt::format("{}.{}.{}", machine(), ::getpid(), counter++);
 }
 
 bool is_of_dead_process(const std::string& name) {

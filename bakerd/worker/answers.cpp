@@ -22,21 +22,14 @@ using Json = nlohmann::json;
 Digest answer_key(const BakeRequest& request) {
     BakeRequest alone = request;
     alone.earlier.reset();
-    const BuildId build = this_build();
-    return map::digest_of(store::bytes_of_text(fmt::format("{} {} {} {}",
-                                                           build.baker_version,
-                                                           build.commit,
-                                                           build.isa_class,
-                                                           encode(Request{0, std::move(alone)}))));
+    return map::digest_of(store::bytes_of_text(
+        fmt::format("{} {}", text_of(this_build()), encode(Request{0, std::move(alone)}))));
 }
 
 store::Result<Answers> Answers::open(const std::string& store_folder) {
     Answers answers(store_folder + "/answers");
-    std::error_code code;
-    fs::create_directories(answers.folder_ + "/tmp", code);
-    if (code)
-        return store::fail(store::ErrorCode::internal,
-                           fmt::format("cannot make the folder {}/tmp: {}", answers.folder_, code.message()));
+    if (auto made = store::make_folder(answers.folder_ + "/tmp"); !made)
+        return tl::unexpected(made.error());
     return answers;
 }
 
@@ -86,7 +79,7 @@ std::optional<TaskAnswer> Answers::read(const Digest& key) const {
     const auto bytes = store::read_all(path_of(key));
     if (!bytes)
         return std::nullopt;
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    const std::string_view text = store::text_of_bytes(*bytes);
     const std::size_t line = text.find('\n');
     const auto answer = decode_answer(text.substr(0, line));
     if (!answer || line == text.npos)

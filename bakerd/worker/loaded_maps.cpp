@@ -3,6 +3,7 @@
 #include "bakerd/map/import.h"
 #include "bakerd/map/survey.h"
 #include "bakerd/store/manifest.h"
+#include "bakerd/store/text_bytes.h"
 
 namespace drtv::worker {
 namespace {
@@ -47,8 +48,7 @@ LoadResult LoadedMaps::load(const Digest& digest) const {
     const auto bytes = store_.get(digest);
     if (!bytes)
         return failed(bytes.error().message, true);
-    const auto manifest =
-        store::decode_manifest({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    const auto manifest = store::decode_manifest(store::text_of_bytes(*bytes));
     if (!manifest)
         return failed(manifest.error().message, false);
     auto imported = map::import_map(manifest->roots, store::manifest_source(*manifest, store_));

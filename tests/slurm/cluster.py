@@ -153,7 +153,8 @@ class Cluster:
             return cls(folder, len(json.load(file)))
 
     def _mark(self, name):
-        return f"DRTV_CLUSTER_PART={self.folder}/{name}"
+        """A variable of the environment that a part's processes hand on, and its value."""
+        return "DRTV_CLUSTER_PART", f"{self.folder}/{name}"
 
     def _start(self, name, *command):
         os.makedirs(os.path.join(self.folder, "spool", name), exist_ok=True)
@@ -164,13 +165,13 @@ class Cluster:
                 stdout=log,
                 stderr=log,
                 start_new_session=True,
-                env={**self.environment, **dict([self._mark(name).split("=", 1)])},
+                env={**self.environment, **dict([self._mark(name)])},
             )
         self.children.append(started)
 
     def members(self, name):
         """The processes of a part, with all that they started: nobody else carries the mark."""
-        mark = self._mark(name).encode()
+        mark = "=".join(self._mark(name)).encode()
         found = set()
         table = list(processes())
         for pid, _, environment in table:
