@@ -42,8 +42,12 @@ std::vector<std::pair<std::string, worker::ArrayFile>> ArrayFolder::all() const 
         if (key == "tmp")
             continue;
         const auto bytes = store::read_all(entry->path().string());
-        auto array = bytes ? worker::decode_array(store::text_of_bytes(*bytes))
-                           : tl::unexpected(bytes.error().message);
+        // Another start may be able to.
+        if (!bytes) {
+            spdlog::warn("array {} is left alone: {}", key, bytes.error().message);
+            continue;
+        }
+        auto array = worker::decode_array(store::text_of_bytes(*bytes));
         if (!array)
             spdlog::warn("array {}: {}", key, array.error());
         arrays.emplace_back(key, array ? std::move(*array) : worker::ArrayFile{});

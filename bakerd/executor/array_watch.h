@@ -43,6 +43,9 @@ class ArrayWatch {
     // Whether the task may still answer it.
     [[nodiscard]] bool expects(std::size_t task, const Digest& answer) const;
 
+    // Nor any other that is in its batch.
+    [[nodiscard]] bool is_settled(std::size_t task) const { return tasks_.at(task).unanswered.empty(); }
+
     // It has its answer, or nobody wants it any more.
     void settle(std::size_t task, const Digest& answer);
 

@@ -28,4 +28,17 @@ std::vector<std::size_t> cut_batches(std::span<const double> seconds, const Batc
     return ends;
 }
 
+std::size_t tasks_of_array(std::size_t slots) {
+    constexpr std::size_t least = 16;
+    return std::max(2 * slots, least);
+}
+
+double long_batch_s(double batch_s, double load_s, double most_s) {
+    return std::max(batch_s, std::min(8 * load_s, most_s));
+}
+
+double least_batch_s(double batch_s, double load_s) {
+    return std::min(std::max(BatchRule().least_s, 2 * load_s), batch_s);
+}
+
 }  // namespace drtv::executor

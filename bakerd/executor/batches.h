@@ -22,4 +22,12 @@ struct BatchRule {
 // none.
 [[nodiscard]] std::vector<std::size_t> cut_batches(std::span<const double> seconds, const BatchRule& rule);
 
+// Tasks of an array behind which more waits: enough that no slot idles before the next one is there; fewer
+// are sooner done, and closed.
+[[nodiscard]] std::size_t tasks_of_array(std::size_t slots);
+
+// A task that takes `load_s` for its map should bake for longer, where nobody waits for it.
+[[nodiscard]] double long_batch_s(double batch_s, double load_s, double most_s);
+[[nodiscard]] double least_batch_s(double batch_s, double load_s);
+
 }  // namespace drtv::executor

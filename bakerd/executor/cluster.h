@@ -84,6 +84,9 @@ class Cluster {
 
     [[nodiscard]] virtual tl::expected<ClusterView, std::string> view() = 0;
 
+    // Brings back nodes that are out by a fault of the cluster's own, where we may.
+    virtual void mend(const ClusterView& view) = 0;
+
     // All tasks of the array, or some.
     virtual void cancel(const std::string& key) = 0;
     virtual void cancel(std::span<const ClusterTask> tasks) = 0;

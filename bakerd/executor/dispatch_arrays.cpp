@@ -36,24 +36,22 @@ void Dispatcher::load_arrays() {
             continue;
         }
         std::vector<std::vector<Digest>> batches;
-        std::set<Digest> keys;
+        std::vector<Digest> keys;
         for (const std::vector<worker::BakeRequest>& sectors : file.batches) {
             std::vector<Digest>& batch = batches.emplace_back();
             for (const worker::BakeRequest& request : sectors) {
                 batch.push_back(worker::answer_key(request));
-                keys.insert(batch.back());
+                keys.push_back(batch.back());
                 left_behind_[batch.back()] = {key, batches.size() - 1};
             }
         }
         spdlog::info("array {} goes on: {} tasks", key, batches.size());
         ArrayWatch watch(batches, options_.patience, now());
         // Who asks for them again finds their answers.
-        const std::set<Digest> answered = answers_.among(keys);
-        for (std::size_t task = 0; task < batches.size(); ++task) {
-            for (const Digest& sector : batches[task]) {
-                if (answered.contains(sector) && answers_.read(sector))
-                    watch.settle(task, sector);
-            }
+        std::ranges::sort(keys);
+        for (const Digest& answered : answers_.among(keys)) {
+            if (answers_.read(answered))
+                watch.settle(left_behind_.at(answered).task, answered);
         }
         // Whether the cluster heard of it is not known.
         arrays_.emplace(key, Array{Priority::nightly, std::move(batches), std::move(watch), 0, false});
@@ -149,8 +147,9 @@ void Dispatcher::try_again(const std::string& array_key, const Array& array, con
     if (ended.last) {
         log = fmt::format("logs/{}/{}.log", ended.last->key, ended.last->number);
         const std::string printed = last_words(options_.store_folder + "/" + log);
-        words = join(fmt::format("its task ended on node {} as {} (exit status {}; {})",
-                                 ended.last->node,
+        const std::string& node = ended.last->node;
+        words = join(fmt::format("its task ended{} as {} (exit status {}; {})",
+                                 node.empty() ? "" : " on node " + node,
                                  ended.last->words,
                                  ended.last->exit_status,
                                  log),
@@ -208,11 +207,16 @@ void Dispatcher::close_arrays() {
     });
 }
 
+bool Dispatcher::is_at_work(const Place& place) const {
+    const auto array = arrays_.find(place.array);
+    return array != arrays_.end() && !array->second.watch.is_settled(place.task);
+}
+
 // Until then a task that runs twice finds them, and a daemon that starts again.
 void Dispatcher::remove_spent_answers() {
     const auto kept =
         std::ranges::partition(spent_, [this](const Spent& spent) {
-            return arrays_.contains(spent.array) || now() - spent.delivered < spent_answers_stay;
+            return now() - spent.delivered < spent_answers_stay || (spent.place && is_at_work(*spent.place));
         }).begin();
     for (auto spent = kept; spent != spent_.end(); ++spent) {
         if (!sectors_.contains(spent->answer))

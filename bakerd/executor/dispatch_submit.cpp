@@ -36,6 +36,7 @@ void Dispatcher::view_cluster() {
         spdlog::warn("{}", view.error());
         return;
     }
+    cluster_->mend(*view);
     view_ = std::move(*view);
     std::erase_if(excluded_, [this](const auto& node) { return node.second.until <= now(); });
 }
@@ -47,9 +48,10 @@ ClusterState Dispatcher::state() const {
             ++(task.state == TaskState::running ? state.tasks_running : state.tasks_waiting);
     }
     state.tasks_lost = lost_;
-    for (const std::string& trouble : {submit_trouble_, list_trouble_, view_trouble_}) {
+    for (const std::string* trouble :
+         {&submissions_[1].trouble, &submissions_[0].trouble, &list_trouble_, &view_trouble_}) {
         if (state.trouble.empty())
-            state.trouble = trouble;
+            state.trouble = *trouble;
     }
     if (!view_)
         return state;
@@ -102,22 +104,20 @@ std::int64_t Dispatcher::memory_for(std::span<const std::vector<Digest>> batches
     return largest < (std::int64_t{1} << 30) ? 0 : std::min(wanted, largest);
 }
 
-// Enough that no slot idles before the next array is there; fewer are sooner done, and closed.
 std::size_t Dispatcher::tasks_of_array() const {
-    constexpr std::size_t least = 16;
-    return std::min(std::max(2 * slots(), least), view_->max_tasks);
+    return std::min(executor::tasks_of_array(slots()), view_->max_tasks);
 }
 
-// A task that loads a large map should bake for longer, where nobody waits for it.
 double Dispatcher::batch_s(Priority priority) const {
     if (priority == Priority::interactive)
         return options_.batch_s;
-    return std::max(options_.batch_s, std::min(8 * costs_.load_seconds(), options_.max_batch_s));
+    return long_batch_s(options_.batch_s, costs_.load_seconds(), options_.max_batch_s);
 }
 
 Dispatcher::Cut Dispatcher::cut(Priority priority) {
     Ready& ready = this->ready(priority);
-    const std::size_t most = max_tasks_ > 0 ? std::min(max_tasks_, view_->max_tasks) : view_->max_tasks;
+    const std::size_t taken = submissions(priority).max_tasks;
+    const std::size_t most = taken > 0 ? std::min(taken, view_->max_tasks) : view_->max_tasks;
     std::vector<std::vector<Digest>> batches;
     std::vector<Digest> keys;
     std::vector<double> seconds;
@@ -143,7 +143,7 @@ Dispatcher::Cut Dispatcher::cut(Priority priority) {
     }
     BatchRule rule;
     rule.batch_s = batch_s(priority);
-    rule.least_s = std::min(std::max(rule.least_s, 2 * costs_.load_seconds()), rule.batch_s);
+    rule.least_s = least_batch_s(rule.batch_s, costs_.load_seconds());
     rule.threads = view_->task_threads;
     rule.slots = slots();
     rule.max_batches = most;
@@ -178,7 +178,8 @@ Dispatcher::Cut Dispatcher::cut(Priority priority) {
 }
 
 void Dispatcher::submit(Priority priority) {
-    if (!view_ || now() < next_submit_ || ready(priority).keys.empty())
+    Submissions& submissions = this->submissions(priority);
+    if (!view_ || now() < submissions.next || ready(priority).keys.empty())
         return;
     // A node that is down for a moment may be the one that can.
     const bool none_may =
@@ -228,17 +229,20 @@ void Dispatcher::submit(Priority priority) {
         array.key,
         Array{
             priority, std::move(batches), std::move(watch), array.memory_bytes, taken.has_value(), is_pilot});
-    submit_trouble_ = taken ? "" : taken.error().sentence;
+    submissions.trouble = taken ? "" : taken.error().sentence;
     if (taken) {
-        refusals_ = 0;
-        max_tasks_ = 2 * max_tasks_ >= view_->max_tasks ? 0 : 2 * max_tasks_;
+        submissions.refusals = 0;
+        submissions.max_tasks = 2 * submissions.max_tasks >= view_->max_tasks ? 0 : 2 * submissions.max_tasks;
         spdlog::info("array {}: tasks {}, sectors {}", array.key, array.tasks, sectors);
         return;
     }
-    spdlog::warn("array {} was perhaps not taken: {}", array.key, taken.error().sentence);
-    next_submit_ = now() + options_.pause * (1 << std::min(refusals_++, 4));
+    spdlog::warn("array {} was {}: {}",
+                 array.key,
+                 written ? "perhaps not taken" : "not submitted",
+                 taken.error().sentence);
+    submissions.next = now() + options_.pause * (1 << std::min(submissions.refusals++, 4));
     if (taken.error().is_too_large)
-        max_tasks_ = std::max(array.tasks / 2, std::size_t{1});
+        submissions.max_tasks = std::max(array.tasks / 2, std::size_t{1});
 }
 
 }  // namespace drtv::executor

@@ -19,6 +19,7 @@ constexpr std::size_t max_ready = 400'000;
 
 constexpr std::chrono::hours lost_answers_stay(24 * 7);
 constexpr std::chrono::hours logs_stay(24 * 30);
+constexpr std::chrono::hours sweep_every(24);
 
 void sweep(const DispatchOptions& options) {
     const std::string& store = options.store_folder;
@@ -46,7 +47,6 @@ store::Result<Dispatcher> Dispatcher::open(DispatchOptions options,
             store::write_mark(options.store_folder + "/build", worker::text_of(worker::this_build()));
         !marked)
         return tl::unexpected(marked.error());
-    sweep(options);
     Dispatcher dispatcher(
         std::move(options), cluster, blobs, std::move(callbacks), std::move(*folder), std::move(*answers));
     dispatcher.load_arrays();
@@ -68,9 +68,13 @@ Dispatcher::Dispatcher(DispatchOptions options,
       next_answers_(now()),
       next_queue_(now()),
       next_view_(now()),
-      next_submit_(now()) {}
+      next_sweep_(now()) {}
 
 Dispatcher::Time Dispatcher::step() {
+    if (now() >= next_sweep_) {
+        sweep(options_);
+        next_sweep_ = now() + sweep_every;
+    }
     if (now() >= next_view_)
         view_cluster();
     pull();
@@ -163,11 +167,12 @@ void Dispatcher::take_up(SectorTask task) {
 void Dispatcher::collect_answers() {
     next_answers_ = now() + options_.answers_every;
     const std::vector<Digest> fresh = std::exchange(fresh_, {});
-    std::set<Digest> asked(fresh.begin(), fresh.end());
+    std::vector<Digest> asked = fresh;
     for (const auto& [key, sector] : sectors_) {
         if (sector.place)
-            asked.insert(key);
+            asked.push_back(key);
     }
+    std::ranges::sort(asked);
     for (const Digest& key : answers_.among(asked)) {
         if (const auto answer = answers_.read(key); answer && sectors_.contains(key))
             deliver(key, *answer);
@@ -212,7 +217,7 @@ void Dispatcher::finish(const Digest& key,
                         const std::string& log) {
     const auto found = sectors_.find(key);
     Sector sector = std::move(found->second);
-    spent_.push_back({key, sector.place ? sector.place->array : "", now()});
+    spent_.push_back({key, sector.place, now()});
     settle(key, sector);
     sectors_.erase(found);
     for (const std::uint64_t id : sector.ids)

@@ -86,10 +86,17 @@ class Dispatcher {
         std::size_t unknown = 0;  // of which that is not known
         bool is_dry = false;      // nothing waits behind them
     };
+    // How arrays of a priority were taken of late.
+    struct Submissions {
+        Time next;                  // when another may be tried
+        int refusals = 0;           // in a row
+        std::size_t max_tasks = 0;  // of the next array; 0: what the cluster allows
+        std::string trouble;        // why the last one was not taken; empty: it was
+    };
     // An answer that was delivered.
     struct Spent {
         Digest answer;
-        std::string array;
+        std::optional<Place> place;
         Time delivered;
     };
     // A node that must not bake.
@@ -117,6 +124,9 @@ class Dispatcher {
     [[nodiscard]] Time now() const { return options_.clock(); }
 
     [[nodiscard]] Ready& ready(Priority priority) { return ready_[static_cast<std::size_t>(priority)]; }
+    [[nodiscard]] Submissions& submissions(Priority priority) {
+        return submissions_[static_cast<std::size_t>(priority)];
+    }
 
     // dispatcher.cpp: sectors and their answers.
     void pull();
@@ -140,6 +150,7 @@ class Dispatcher {
     void judge(const std::string& key, Array& array);
     void try_again(const std::string& array_key, const Array& array, const EndedTask& ended);
     void close_arrays();
+    [[nodiscard]] bool is_at_work(const Place& place) const;
     void remove_spent_answers();
     void view_cluster();
     void submit(Priority priority);
@@ -165,21 +176,20 @@ class Dispatcher {
     std::map<Digest, Sector> sectors_;  // taken up, by the key of the answer
     std::vector<Digest> fresh_;   // of these, for which no answer has been looked for, in the order of baking
     std::array<Ready, 2> ready_;  // by priority
-    std::map<std::string, Array> arrays_;  // that are open
-    std::map<Digest, Place> left_behind_;  // in an earlier run's arrays, and not taken up yet
+    std::array<Submissions, 2> submissions_;  // likewise
+    std::map<std::string, Array> arrays_;     // that are open
+    std::map<Digest, Place> left_behind_;     // in an earlier run's arrays, and not taken up yet
     std::vector<Spent> spent_;
     std::map<std::string, std::set<Digest>> barren_;  // by node: batches that it failed since its last answer
     std::map<std::string, Exclusion> excluded_;       // nodes
     Costs costs_;
     std::optional<ClusterView> view_;
-    Time viewed_;                // when it was asked for last
-    Time shaken_;                // when tasks were lost last
-    std::size_t max_tasks_ = 0;  // of the next array; 0: what the cluster allows
-    int refusals_ = 0;           // in a row
-    std::size_t lost_ = 0;       // tasks
+    Time viewed_;           // when it was asked for last
+    Time shaken_;           // when tasks were lost last
+    std::size_t lost_ = 0;  // tasks
     // What the cluster could not do when it was asked last; empty: it could.
-    std::string list_trouble_, view_trouble_, submit_trouble_;
-    Time next_answers_, next_queue_, next_view_, next_submit_;
+    std::string list_trouble_, view_trouble_;
+    Time next_answers_, next_queue_, next_view_, next_sweep_;
 };
 
 }  // namespace drtv::executor

@@ -83,7 +83,8 @@ std::optional<int> wait_until(pid_t pid, Clock::time_point end) {
 }  // namespace
 
 tl::expected<std::string, std::string> run_command(const std::vector<std::string>& command,
-                                                   milliseconds time_limit) {
+                                                   milliseconds time_limit,
+                                                   std::span<const std::string> hidden) {
     const Clock::time_point end = Clock::now() + time_limit;
     const store::FileDescriptor nothing(::open("/dev/null", O_RDONLY | O_CLOEXEC));
     auto output = make_pipe();
@@ -92,7 +93,7 @@ tl::expected<std::string, std::string> run_command(const std::vector<std::string
     auto error = make_pipe();
     if (!error)
         return tl::unexpected(error.error().message);
-    const auto pid = spawn(command, {nothing.get(), output->write.get(), error->write.get()});
+    const auto pid = spawn(command, {nothing.get(), output->write.get(), error->write.get()}, hidden);
     if (!pid)
         return tl::unexpected(pid.error().message);
     output->write = store::FileDescriptor();

@@ -44,7 +44,9 @@ void for_each_portion(std::span<const std::string> names, const Command& command
 }  // namespace
 
 tl::expected<std::string, std::string> Slurm::run(const std::vector<std::string>& command) const {
-    return run_command(command, options_.time_limit);
+    // With these a user tells Slurm what to leave out of its answers.
+    static const std::vector<std::string> filters = {"SQUEUE_", "SINFO_", "SCANCEL_"};
+    return run_command(command, options_.time_limit, filters);
 }
 
 tl::expected<void, Refusal> Slurm::submit(const ClusterArray& array) {
@@ -125,7 +127,7 @@ tl::expected<ClusterView, std::string> Slurm::view() {
     const auto config = run({"scontrol", "show", "config"});
     if (!config)
         return Failure(config.error());
-    std::vector<std::string> ask = {"sinfo", "--noheader", "--Node", "--format=%N|%c|%m|%T|%E"};
+    std::vector<std::string> ask = {"sinfo", "--noheader", "--Node", "--format=%N|%c|%m|%T|%P|%E"};
     if (!options_.partition.empty())
         ask.push_back("--partition=" + options_.partition);
     const auto nodes = run(ask);
@@ -137,24 +139,33 @@ tl::expected<ClusterView, std::string> Slurm::view() {
         view.max_tasks, std::max(configured(*config, "MaxArraySize").value_or(1001), std::size_t{2}) - 1);
     view.max_tasks = std::clamp(
         configured(*config, "max_array_tasks").value_or(view.max_tasks), std::size_t{1}, view.max_tasks);
-    std::set<std::string> known;
+    std::vector<NodeRow> rows;
     for (const std::string_view row : rows_of(*nodes)) {
-        auto node = parse_node(row);
-        // A node stands in a row for each of its partitions.
-        if (node && known.insert(node->name).second)
-            view.nodes.push_back(std::move(*node));
+        if (auto parsed = parse_node(row))
+            rows.push_back(std::move(*parsed));
+    }
+    if (options_.partition.empty() && std::ranges::any_of(rows, &NodeRow::is_of_default))
+        std::erase_if(rows, [](const NodeRow& row) { return !row.is_of_default; });
+    std::set<std::string> known;
+    for (NodeRow& row : rows) {
+        if (known.insert(row.node.name).second)
+            view.nodes.push_back(std::move(row.node));
     }
     int smallest = 16;
     for (const ClusterNode& node : view.nodes)
         smallest = std::min(smallest, std::max(node.threads, 1));
     view.task_threads = options_.threads > 0 ? options_.threads : smallest;
-    for (const ClusterNode& node : view.nodes) {
-        if (options_.resumes_nodes && node.reason == "drained: Duplicate jobid") {
-            spdlog::warn("node {} is resumed: it was drained for a \"Duplicate jobid\"", node.name);
-            static_cast<void>(run({"scontrol", "update", "nodename=" + node.name, "state=resume"}));
-        }
-    }
     return view;
+}
+
+void Slurm::mend(const ClusterView& view) {
+    for (const ClusterNode& node : view.nodes) {
+        if (!options_.resumes_nodes || node.reason != "drained: Duplicate jobid")
+            continue;
+        spdlog::warn("node {} is resumed: it was drained for a \"Duplicate jobid\"", node.name);
+        if (const auto said = run({"scontrol", "update", "nodename=" + node.name, "state=resume"}); !said)
+            spdlog::warn("{}", said.error());
+    }
 }
 
 void Slurm::cancel(const std::string& key) {

@@ -31,6 +31,7 @@ class Slurm final : public Cluster {
     [[nodiscard]] tl::expected<std::vector<ClusterTask>, std::string> list(
         std::span<const std::string> keys) override;
     [[nodiscard]] tl::expected<ClusterView, std::string> view() override;
+    void mend(const ClusterView& view) override;
     void cancel(const std::string& key) override;
     void cancel(std::span<const ClusterTask> tasks) override;
     void nudge(std::span<const ClusterTask> tasks) override;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <csignal>
 #include <map>
 #include <ranges>
 
@@ -91,11 +92,13 @@ std::optional<std::size_t> configured(std::string_view text, std::string_view na
     return number<std::size_t>(value.substr(0, value.find_first_of(" ,\n")));
 }
 
-std::optional<ClusterNode> parse_node(std::string_view row) {
+std::optional<NodeRow> parse_node(std::string_view row) {
     const std::vector<std::string_view> columns = columns_of(row);
-    if (columns.size() != 5)
+    if (columns.size() != 6)
         return std::nullopt;
-    ClusterNode node;
+    NodeRow parsed;
+    parsed.is_of_default = columns[4].ends_with('*');
+    ClusterNode& node = parsed.node;
     node.name = columns[0];
     node.threads = number<int>(columns[1]).value_or(0);
     node.memory_bytes = number<std::int64_t>(columns[2]).value_or(0) << 20;
@@ -108,8 +111,8 @@ std::optional<ClusterNode> parse_node(std::string_view row) {
     node.is_up = std::ranges::find(up, state) != up.end();
     if (!node.is_up)
         node.reason =
-            columns[4] == "none" ? std::string(columns[3]) : fmt::format("{}: {}", columns[3], columns[4]);
-    return node;
+            columns[5] == "none" ? std::string(columns[3]) : fmt::format("{}: {}", columns[3], columns[5]);
+    return parsed;
 }
 
 std::optional<std::string> job_number(std::string_view text) {
@@ -148,6 +151,9 @@ std::optional<ClusterTask> parse_task(std::string_view row) {
         columns[4] == "None" ? std::string(columns[3]) : fmt::format("{} ({})", columns[3], columns[4]);
     task.node = columns[5];
     task.exit_status = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);
+    // A node that is shut down ends its tasks before Slurm knows that it is gone.
+    if (task.state == TaskState::done && task.exit_status == 128 + SIGTERM)
+        task.state = TaskState::lost;
     return task;
 }
 

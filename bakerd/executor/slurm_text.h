@@ -14,8 +14,12 @@ namespace drtv::executor {
 // A row of squeue, `Name|ArrayJobID|ArrayTaskID|State|Reason|BatchHost|exit_code|`; nothing where it is none.
 [[nodiscard]] std::optional<ClusterTask> parse_task(std::string_view row);
 
-// A row of sinfo, `%N|%c|%m|%T|%E`; likewise.
-[[nodiscard]] std::optional<ClusterNode> parse_node(std::string_view row);
+// A row of sinfo, `%N|%c|%m|%T|%P|%E`; likewise. There is one for each partition that a node is in.
+struct NodeRow {
+    ClusterNode node;
+    bool is_of_default = false;  // the row's partition is the one that tasks go to which name none
+};
+[[nodiscard]] std::optional<NodeRow> parse_node(std::string_view row);
 
 // The value of "Name = value" in what scontrol shows.
 [[nodiscard]] std::optional<std::size_t> configured(std::string_view text, std::string_view name);

@@ -6,10 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 
 extern char** environ;
 
@@ -29,7 +31,9 @@ store::Result<Pipe> make_pipe() {
     return Pipe{store::FileDescriptor(ends[0]), store::FileDescriptor(ends[1])};
 }
 
-store::Result<pid_t> spawn(const std::vector<std::string>& command, const Streams& streams) {
+store::Result<pid_t> spawn(const std::vector<std::string>& command,
+                           const Streams& streams,
+                           std::span<const std::string> hidden) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     const auto hand_over = [&](int file, int as) {
@@ -51,8 +55,16 @@ store::Result<pid_t> spawn(const std::vector<std::string>& command, const Stream
     for (const std::string& argument : command)
         arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);
+    std::vector<char*> variables;
+    for (char** variable = environ; *variable != nullptr; ++variable) {
+        const std::string_view text = *variable;
+        if (std::ranges::none_of(hidden, [&](const std::string& name) { return text.starts_with(name); }))
+            variables.push_back(*variable);
+    }
+    variables.push_back(nullptr);
     pid_t pid = 0;
-    const int error = ::posix_spawnp(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
+    const int error =
+        ::posix_spawnp(&pid, arguments[0], &actions, &attributes, arguments.data(), variables.data());
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
     if (error != 0)

@@ -6,6 +6,7 @@
 
 #include <sys/types.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,11 @@ struct Streams {
 };
 
 // In a process group of its own, named like the process: ctrl-C in the daemon's terminal is the daemon's to
-// handle. A program's name without a slash is looked up in PATH.
-[[nodiscard]] store::Result<pid_t> spawn(const std::vector<std::string>& command, const Streams& streams);
+// handle. A program's name without a slash is looked up in PATH. Variables of the environment whose names
+// begin with what is `hidden` are not handed on.
+[[nodiscard]] store::Result<pid_t> spawn(const std::vector<std::string>& command,
+                                         const Streams& streams,
+                                         std::span<const std::string> hidden = {});
 
 // "ended with status 3", "was ended by signal 9 (Killed)"; `status` as waitpid gives it.
 [[nodiscard]] std::string describe_exit(int status);

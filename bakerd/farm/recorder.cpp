@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace drtv::farm {
@@ -26,6 +29,9 @@ JobSectorRow row_of(const FinishedSector& sector, std::int64_t job) {
     }
     return row;
 }
+
+// Others wait for the database meanwhile.
+constexpr std::size_t max_together = 64;
 
 void tell_end(const JobRow& job) {
     if (job.state == JobState::succeeded)
@@ -76,29 +82,46 @@ void Recorder::run() {
         changed_.wait(lock, [this] { return stopping_ || !pending_.empty(); });
         if (pending_.empty())
             return;
-        Pending pending = std::move(pending_.front());
-        pending_.pop_front();
+        // As many as wait.
+        const std::size_t count = std::min(pending_.size(), max_together);
+        std::vector<Pending> several(
+            std::make_move_iterator(pending_.begin()),
+            std::make_move_iterator(pending_.begin() + static_cast<std::ptrdiff_t>(count)));
+        pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(count));
         lock.unlock();
-        // Before the sector is recorded: after its last one a job no longer holds its files, and its client
+        // Before the sectors are recorded: after its last one a job no longer holds its files, and its client
         // would find some of them gone before they are pulled.
         if (auto kept = cache_.keep_to_limit(); !kept)
             spdlog::error("{}", kept.error().message);
-        const bool recorded = try_to_record(pending);
+        if (several.size() > 1)
+            record_together(several);
+        auto left = several.begin();
+        while (left != several.end() && try_to_record(*left))
+            ++left;
         lock.lock();
-        if (recorded)
+        if (left == several.end())
             continue;
         if (stopping_)
             return;  // after a restart what is left waits again
-        pending_.push_front(std::move(pending));
+        pending_.insert(
+            pending_.begin(), std::make_move_iterator(left), std::make_move_iterator(several.end()));
         changed_.wait_for(lock, pause_, [this] { return stopping_; });
     }
 }
 
+void Recorder::record_together(std::vector<Pending>& several) {
+    if (!write(several))
+        return;  // one of them may be why
+    // Jobs may have joined while this was written.
+    std::erase_if(several, [this](Pending& pending) {
+        pending.sector.jobs = book_.leave(pending.sector.end.id, pending.sector.jobs);
+        return pending.sector.jobs.empty();
+    });
+}
+
 bool Recorder::try_to_record(Pending& pending) {
     FinishedSector& sector = pending.sector;
-    const auto done = sector.end.reply
-                          ? cache_.commit_if_there(*sector.end.reply, [&] { return write(pending); })
-                          : write(pending);
+    const auto done = write(std::span(&pending, 1));
     if (!done && done.error().code == store::ErrorCode::not_found) {
         spdlog::warn("sector ({}, {}) is baked again: {}",
                      sector.key.sector.i,
@@ -119,27 +142,47 @@ bool Recorder::try_to_record(Pending& pending) {
     return true;
 }
 
-store::Result<void> Recorder::write(Pending& pending) {
-    const FinishedSector& sector = pending.sector;
-    std::vector<JobRow> jobs;
-    std::vector<std::int64_t> damaged;
-    const auto done = database_.write([&](Connection& connection) {
-        if (sector.end.reply && !pending.kept) {
-            insert_result(connection, {0, sector.key.sector, sector.key.results_key, *sector.end.reply});
-            count_sectors(connection, 0, 0, 1);
-        }
-        for (const std::int64_t id : sector.jobs) {
-            if (auto job = record_sector(connection, row_of(sector, id)))
-                jobs.push_back(std::move(*job));
-            else if (auto known = find_job(connection, id); known && known->sound)
-                jobs.push_back(
-                    std::move(known->row));  // cancelled, or a commit was kept that was called failed
-            else
-                damaged.push_back(id);
-        }
+store::Result<void> Recorder::write(std::span<Pending> several) {
+    std::vector<const worker::SectorResult*> results;
+    for (const Pending& pending : several) {
+        if (pending.sector.end.reply)
+            results.push_back(&*pending.sector.end.reply);
+    }
+    std::vector<Written> written;
+    const auto done = cache_.commit_if_there(results, [&] {
+        return database_.write([&](Connection& connection) {
+            for (const Pending& pending : several)
+                written.push_back(write_one(connection, pending));
+        });
     });
     if (!done)
         return done;
+    for (std::size_t n = 0; n < several.size(); ++n)
+        tell(several[n], written[n]);
+    return {};
+}
+
+Recorder::Written Recorder::write_one(Connection& connection, const Pending& pending) {
+    const FinishedSector& sector = pending.sector;
+    Written written;
+    if (sector.end.reply && !pending.kept) {
+        insert_result(connection, {0, sector.key.sector, sector.key.results_key, *sector.end.reply});
+        count_sectors(connection, 0, 0, 1);
+    }
+    for (const std::int64_t id : sector.jobs) {
+        if (auto job = record_sector(connection, row_of(sector, id)))
+            written.jobs.push_back(std::move(*job));
+        else if (auto known = find_job(connection, id); known && known->sound)
+            written.jobs.push_back(
+                std::move(known->row));  // cancelled, or a commit was kept that was called failed
+        else
+            written.damaged.push_back(id);
+    }
+    return written;
+}
+
+void Recorder::tell(Pending& pending, const Written& written) {
+    const FinishedSector& sector = pending.sector;
     if (sector.end.reply && !std::exchange(pending.kept, true))
         cache_.added(*sector.end.reply);
     if (!sector.end.reply)
@@ -147,15 +190,14 @@ store::Result<void> Recorder::write(Pending& pending) {
                       sector.key.sector.i,
                       sector.key.sector.j,
                       sector.end.reply.error().sentence);
-    for (const JobRow& job : jobs) {
+    for (const JobRow& job : written.jobs) {
         book_.update(job, sector.end.reply ? &*sector.end.reply : nullptr);
         if (job.state != JobState::running)
             cache_.job_ended();
         tell_end(job);
     }
-    for (const std::int64_t id : damaged)
+    for (const std::int64_t id : written.damaged)
         fail_in_memory(id, damaged_row);
-    return {};
 }
 
 // After a restart it has failed in the database too.

@@ -11,7 +11,9 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <thread>
+#include <vector>
 
 namespace drtv::farm {
 
@@ -40,11 +42,20 @@ class Recorder {
         FinishedSector sector;
         bool kept = false;  // its result stands in the cache
     };
+    // What the database holds of a sector's jobs since it was written.
+    struct Written {
+        std::vector<JobRow> jobs;
+        std::vector<std::int64_t> damaged;
+    };
 
     void run();
     // False: the database did not take it.
     [[nodiscard]] bool try_to_record(Pending& pending);
-    [[nodiscard]] store::Result<void> write(Pending& pending);
+    // With one wait for the disk. Leaves those that must be tried alone.
+    void record_together(std::vector<Pending>& several);
+    [[nodiscard]] store::Result<void> write(std::span<Pending> several);
+    [[nodiscard]] static Written write_one(Connection& connection, const Pending& pending);
+    void tell(Pending& pending, const Written& written);
     void refuse(const Pending& pending, const store::Error& error);
     void fail_in_memory(std::int64_t job, const std::string& error);
 

@@ -66,14 +66,18 @@ class ResultCache {
     // Mean of what sectors took with these settings, or with any when there are none; 0 without results.
     [[nodiscard]] store::Result<double> mean_seconds(const Digest& results_key);
 
-    // Whether the result's blobs are there. They stay until `commit` has been called, which may insert the
-    // result.
+    // Whether the results' blobs are there. They stay until `commit` has been called, which may insert the
+    // results.
     template <class Commit>
-    [[nodiscard]] store::Result<void> commit_if_there(const worker::SectorResult& result, Commit commit) {
+    [[nodiscard]] store::Result<void> commit_if_there(std::span<const worker::SectorResult* const> results,
+                                                      Commit commit) {
         const std::lock_guard lock(files_mutex_);
-        const worker::ResultBlobs& blobs = result.blobs;
-        if (!blobs_.has(blobs.file) || !blobs_.has(blobs.footprint) || !blobs_.has(blobs.inventory))
-            return store::fail(store::ErrorCode::not_found, "its file left the store before it was recorded");
+        for (const worker::SectorResult* result : results) {
+            const worker::ResultBlobs& blobs = result->blobs;
+            if (!blobs_.has(blobs.file) || !blobs_.has(blobs.footprint) || !blobs_.has(blobs.inventory))
+                return store::fail(store::ErrorCode::not_found,
+                                   "its file left the store before it was recorded");
+        }
         return commit();
     }
     void added(const worker::SectorResult& result) { bytes_ += result.file_bytes + result.footprint_bytes; }

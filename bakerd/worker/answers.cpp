@@ -9,6 +9,7 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -57,21 +58,22 @@ store::Result<void> Answers::write(const Digest& key, const TaskAnswer& answer) 
     return store::write_durably(folder_ + "/tmp", path_of(key), store::bytes_of_text(text));
 }
 
-std::set<Digest> Answers::among(const std::set<Digest>& keys) const {
-    std::set<Digest> found;
+std::vector<Digest> Answers::among(std::span<const Digest> keys) const {
+    std::vector<Digest> found;
     for (auto key = keys.begin(); key != keys.end();) {
         const std::string folder = folder_of(to_hex(*key));
         std::error_code code;
         for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
             const auto name = map::digest_from_hex(entry->path().filename().string());
-            if (name && keys.contains(*name))
-                found.insert(*name);
+            if (name && std::ranges::binary_search(keys, *name))
+                found.push_back(*name);
         }
-        // Keys are sorted: the next folder begins where the first byte changes.
+        // The next folder begins where the first byte changes.
         const std::uint8_t first = key->bytes.front();
-        while (key != keys.end() && key->bytes.front() == first)
-            ++key;
+        key = std::find_if(
+            key, keys.end(), [first](const Digest& next) { return next.bytes.front() != first; });
     }
+    std::ranges::sort(found);
     return found;
 }
 

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 #include <optional>
-#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,9 +31,9 @@ class Answers {
 
     [[nodiscard]] store::Result<void> write(const Digest& key, const TaskAnswer& answer) const;
 
-    // Those of the keys that have an answer. Lists folders: over NFS, asking for a name that is not there yet
-    // would hide it for a minute.
-    [[nodiscard]] std::set<Digest> among(const std::set<Digest>& keys) const;
+    // Those of the keys that have an answer; sorted, as the keys must be. Lists folders: over NFS, asking for
+    // a name that is not there yet would hide it for a minute.
+    [[nodiscard]] std::vector<Digest> among(std::span<const Digest> keys) const;
 
     // Nothing where it cannot be read, or is none.
     [[nodiscard]] std::optional<TaskAnswer> read(const Digest& key) const;

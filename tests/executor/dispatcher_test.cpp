@@ -601,6 +601,33 @@ TEST_F(DispatcherTest, InteractiveSectorsDoNotWaitForTheNight) {
     EXPECT_EQ(ends.size(), 9u);
 }
 
+TEST_F(DispatcherTest, ARefusedNightDoesNotHoldAnArtistUp) {
+    cluster.refusal = Refusal{"sbatch: error: AssocMaxSubmitJobLimit", true};
+    add(1000, 100);
+    pass(3min);
+    cluster.refusal.reset();
+    const std::size_t before = cluster.arrays.size();
+    add(8, 1, Priority::interactive);
+    pass(2s);
+    ASSERT_GT(cluster.arrays.size(), before);
+    EXPECT_EQ(cluster.arrays[before].priority, Priority::interactive);
+    EXPECT_EQ(sectors_of_last_array().size(), 8u);
+}
+
+// They are listed every few seconds: those of an array that runs for an hour would be many.
+TEST_F(DispatcherTest, AnswersOfTasksThatAreDoneLeaveBeforeTheirArrayEnds) {
+    add(1000, 100);
+    pass(2s);
+    const std::size_t sectors = cluster.batch(0).size();
+    answer(0);
+    answer(cluster.batch(1).front(), result(cluster.batch(1).front()));
+    pass(30s);
+    EXPECT_EQ(files("answers"), sectors + 1);
+    pass(1min);
+    EXPECT_EQ(files("answers"), 1u) << "a task that runs twice finds it";
+    EXPECT_GE(files("arrays"), 1u);
+}
+
 TEST_F(DispatcherTest, AnAnswerWhoseFilesWereEvictedIsBakedAgain) {
     add(1);
     pass(2s);
@@ -635,6 +662,17 @@ TEST_F(DispatcherTest, ADamagedAnswerIsBakedAgain) {
     answer(0);
     pass(5s);
     expect_all_baked();
+}
+
+TEST_F(DispatcherTest, AnArrayThatCannotBeReadNowIsLeftAlone) {
+    add(4);
+    pass(2s);
+    const std::string file = test::file_of(cluster.arrays.back());
+    fs::rename(file, file + ".away");
+    fs::create_directory(file);
+    restart();
+    EXPECT_TRUE(cluster.cancelled.empty());
+    EXPECT_TRUE(fs::exists(file));
 }
 
 TEST_F(DispatcherTest, ArraysOfAnotherBuildAreCancelled) {

@@ -30,6 +30,7 @@ class ScriptedCluster final : public executor::Cluster {
     tl::expected<void, Refusal> submit(const ClusterArray& array) override;
     tl::expected<std::vector<ClusterTask>, std::string> list(std::span<const std::string> keys) override;
     tl::expected<ClusterView, std::string> view() override { return cluster; }
+    void mend(const ClusterView&) override {}
     void cancel(const std::string& key) override { cancelled.push_back(key); }
     void cancel(std::span<const ClusterTask> tasks) override;
     void nudge(std::span<const ClusterTask> tasks) override;

@@ -102,6 +102,7 @@ TEST(ParseTask, ReadsWhatSlurmWrites) {
     ASSERT_TRUE(failed);
     EXPECT_EQ(std::tuple(failed->state, failed->exit_status), std::tuple(TaskState::done, 9));
     EXPECT_EQ(parse_task("k|17|4|FAILED|None|node2|9|")->exit_status, 128 + 9);
+    EXPECT_EQ(parse_task("k|17|4|FAILED|None|node2|15|")->state, TaskState::lost) << "its node is shut down";
     const auto state = [](const std::string& words) {
         return parse_task("k|17|4|" + words + "|n/a|0|").value().state;
     };
@@ -233,6 +234,10 @@ TEST_F(SlurmTest, AListIsWholeOrASentence) {
     EXPECT_EQ(Slurm(options).list(keys).error(), "squeue gave a row that is none: l|18|0|PEN");
     program("squeue", "echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2; exit 1");
     EXPECT_NE(Slurm(options).list(keys).error().find("Unable to contact"), std::string::npos);
+    program("squeue", "echo \"k|17|4|RUNNING|None|node2|0${SQUEUE_ACCOUNT}|\"");
+    ::setenv("SQUEUE_ACCOUNT", "other", 1);
+    EXPECT_TRUE(Slurm(options).list(keys)) << "a user's own filters are no matter";
+    ::unsetenv("SQUEUE_ACCOUNT");
     program("squeue", "");
     EXPECT_TRUE(Slurm(options).list(keys).value().empty());
 }
@@ -240,25 +245,33 @@ TEST_F(SlurmTest, AListIsWholeOrASentence) {
 TEST_F(SlurmTest, TheClusterIsSeenAsItIs) {
     program("scontrol",
             "echo 'MaxArraySize            = 501'; echo 'SchedulerParameters = a=1,max_array_tasks=300'");
-    program("sinfo",
-            "echo 'node1|64|2000|idle|none'; echo 'node1|64|2000|idle|none'; echo "
-            "'node2|8+|4000|drained|Duplicate jobid'; echo 'node3|8|4000|idle*|Not responding'");
+    program(
+        "sinfo",
+        "echo 'node1|64|2000|idle|night*|none'; echo 'node1|64|2000|idle|all|none'; echo "
+        "'node2|8+|4000|drained|night*|Duplicate jobid'; echo 'node3|8|4000|idle*|night*|Not responding'; "
+        "echo 'node4|8|4000|idle|all|none'");
     const auto view = Slurm(options).view();
     ASSERT_TRUE(view) << view.error();
     EXPECT_EQ(view->max_tasks, 300u);
     EXPECT_EQ(view->task_threads, 8);
-    ASSERT_EQ(view->nodes.size(), 3u) << "node1 is in two partitions";
+    ASSERT_EQ(view->nodes.size(), 3u) << "node1 is in two partitions, node4 not in the default one";
     EXPECT_EQ(std::tuple(view->nodes[0].is_up, view->nodes[0].threads, view->nodes[0].memory_bytes),
               std::tuple(true, 64, std::int64_t{2000} << 20));
     EXPECT_EQ(std::tuple(view->nodes[1].is_up, view->nodes[1].reason),
               std::tuple(false, "drained: Duplicate jobid"));
     EXPECT_FALSE(view->nodes[2].is_up);
+    Slurm(options).mend(*view);
     EXPECT_FALSE(called_with("state=resume"));
     options.resumes_nodes = true;
-    options.threads = 4;
-    EXPECT_EQ(Slurm(options).view()->task_threads, 4);
+    Slurm(options).mend(*view);
     EXPECT_TRUE(called_with("nodename=node2") && called_with("state=resume")) << calls();
     EXPECT_FALSE(called_with("nodename=node3"));
+    options.threads = 4;
+    EXPECT_EQ(Slurm(options).view()->task_threads, 4);
+    options.partition = "all";
+    program("sinfo", "echo 'node4|8|4000|idle|all|none'");
+    EXPECT_EQ(Slurm(options).view()->nodes.size(), 1u);
+    EXPECT_TRUE(called_with("--partition=all")) << calls();
     program("scontrol", "exit 1");
     EXPECT_FALSE(Slurm(options).view());
 }

@@ -135,6 +135,34 @@ TEST_F(RecorderTest, AFileThatLeftTheStoreBeforeItWasRecordedIsBakedAgain) {
     EXPECT_EQ(wait(job.id, has_ended).row.state, JobState::succeeded);
 }
 
+// They wait while the database is locked, and are then tried together.
+TEST_F(RecorderTest, OneOfManyWhoseFileLeftTheStoreDoesNotHoldTheOthersUp) {
+    std::vector<map::SectorCoordinate> sectors;
+    for (int i = 0; i < 200; ++i)
+        sectors.push_back({i, 0});
+    const JobRow job = add(sectors);
+    std::vector<FinishedSector> finished;
+    for (int n = 0; n < 200; ++n)
+        finished.push_back(bake_next());
+    const JobRow joined = add({{7, 0}});
+    SQLite::Database other(path, SQLite::OPEN_READWRITE);
+    other.exec("BEGIN EXCLUSIVE");
+    blobs->remove(finished[40].end.reply->blobs.file);
+    for (FinishedSector& sector : finished)
+        recorder->record(std::move(sector));
+    wait(job.id, [](const JobView& view) { return !view.warnings.empty(); });
+    other.exec("ROLLBACK");
+    wait(job.id, [](const JobView& view) { return view.row.sectors_done == 199; });
+    for (int n = 0; n < 500 && woken == 0; ++n)
+        std::this_thread::sleep_for(10ms);
+    EXPECT_EQ(cache.counts()->results, 199);
+    EXPECT_EQ(wait(joined.id, has_ended).row.state, JobState::succeeded);
+    recorder->record(bake_next());
+    EXPECT_EQ(wait(job.id, has_ended).row.state, JobState::succeeded);
+    EXPECT_EQ(this->job(job.id).row.sectors_done, 200);
+    EXPECT_EQ(cache.counts()->results, 200);
+}
+
 TEST_F(RecorderTest, AFailureIsTheSectors) {
     const JobRow job = add({{0, 0}});
     const executor::SectorTask task = book.next(executor::Priority::interactive).value();

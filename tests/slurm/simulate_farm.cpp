@@ -12,30 +12,35 @@
 #include <deque>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <queue>
 #include <string>
 #include <vector>
 
 namespace {
 
-using drtv::executor::BatchRule;
-using drtv::executor::cut_batches;
+namespace executor = drtv::executor;
+using executor::BatchRule;
+using executor::cut_batches;
+
+constexpr double max_batch_s = 24 * 3600;
 
 struct Farm {
     std::string costs;
     std::size_t sectors = 25600;
     std::size_t nodes = 4;
-    int threads = 16;            // of a node, and of a task
-    double batch_s = 90;         // that a task should take
-    double launch_s = 0.45;      // from a free slot to a task's first instruction
-    double launches_per_s = 60;  // that the controller can begin
-    double load_s = 1;           // for the map, of which a task's threads wait
-    double map_mb = 100;         // that a task reads
-    double network_mb_s = 1100;  // of the store
-    double files_per_s = 2000;   // that the store can make durable
-    double daemon_per_s = 1000;  // answers that the daemon can record
-    double look_s = 1.5;         // between looks for answers
-    double slowdown = 1;         // of sectors, where cores are fewer than threads
+    int threads = 16;             // of a node, and of a task
+    double batch_s = 90;          // that a task should take
+    double launch_s = 0.45;       // from a free slot to a task's first instruction
+    double launches_per_s = 60;   // that the controller can begin
+    std::size_t map_sectors = 0;  // of a map, before the next map's begin; 0: all are of one
+    double load_s = 1;            // for a map, of which a task's threads wait
+    double map_mb = 100;          // that a task reads for it
+    double network_mb_s = 1100;   // of the store
+    double files_per_s = 2000;    // that the store can make durable
+    double daemon_per_s = 1000;   // answers that the daemon can record
+    double look_s = 1.5;          // between looks for answers
+    double slowdown = 1;          // of sectors, where cores are fewer than threads
 };
 
 struct Cost {
@@ -46,7 +51,7 @@ struct Cost {
 struct Report {
     double seconds = 0;
     double busy_s = 0;  // of threads, in sectors alone
-    std::size_t tasks = 0, arrays = 0;
+    std::size_t tasks = 0, arrays = 0, loads = 0;
     double written_mb = 0, read_mb = 0, files = 0;
     double recorded_s = 0;  // when the daemon has recorded the last answer
 };
@@ -117,7 +122,8 @@ class Simulation {
     };
     struct Slot {
         Task task;
-        int threads = 0;  // at work
+        int threads = 0;                       // at work
+        std::map<std::size_t, double> maps{};  // of the task, and when they are loaded
     };
 
     [[nodiscard]] const Cost& cost(std::size_t sector) const { return costs_[sector % costs_.size()]; }
@@ -143,11 +149,12 @@ class Simulation {
                std::ranges::count_if(open_, [](std::size_t tasks) { return tasks > 0; }) < 2) {
             const double mean_s = baked_s_ / static_cast<double>(baked_) * farm_.slowdown;
             BatchRule rule;
-            rule.batch_s = farm_.batch_s;
             rule.threads = farm_.threads;
             rule.slots = farm_.nodes;
-            const std::size_t tasks = std::max(2 * farm_.nodes, std::size_t{16});
-            const double fill = static_cast<double>(tasks) * farm_.batch_s * farm_.threads / mean_s;
+            rule.batch_s = executor::long_batch_s(farm_.batch_s, load_seen_s_, max_batch_s);
+            rule.least_s = executor::least_batch_s(rule.batch_s, load_seen_s_);
+            const std::size_t tasks = executor::tasks_of_array(farm_.nodes);
+            const double fill = static_cast<double>(tasks) * rule.batch_s * farm_.threads / mean_s;
             const std::size_t left = farm_.sectors - taken_;
             rule.is_last = static_cast<double>(left) <= fill;
             rule.max_batches = rule.is_last ? 1000 : tasks;
@@ -164,24 +171,34 @@ class Simulation {
             slots_[slot].task = waiting_.front();
             waiting_.pop_front();
             ++report_.tasks;
-            report_.read_mb += farm_.map_mb;
-            events_.push({launches_.serve(now, 1) + farm_.launch_s, &Simulation::load, slot, 0});
+            slots_[slot].maps.clear();
+            slots_[slot].threads = farm_.threads;
+            const double begun = launches_.serve(now, 1) + farm_.launch_s;
+            for (int thread = 0; thread < farm_.threads; ++thread)
+                events_.push({begun, &Simulation::next_sector, slot, 0});
         }
     }
 
-    void load(const Event& event) {
-        const double read = network_.serve(event.time, farm_.map_mb);
-        slots_[event.slot].threads = farm_.threads;
-        for (int thread = 0; thread < farm_.threads; ++thread)
-            events_.push({read + farm_.load_s, &Simulation::next_sector, event.slot, 0});
+    // When the task has the sector's map.
+    double load(Slot& slot, double now, std::size_t sector) {
+        const std::size_t map = farm_.map_sectors == 0 ? 0 : sector / farm_.map_sectors;
+        const auto [loaded, is_new] = slot.maps.try_emplace(map, 0);
+        if (is_new) {
+            loaded->second = network_.serve(now, farm_.map_mb) + farm_.load_s;
+            ++report_.loads;
+            report_.read_mb += farm_.map_mb;
+            if (slot.maps.size() == 1)
+                load_seen_s_ = loaded->second - now;
+        }
+        return std::max(now, loaded->second);
     }
 
     void next_sector(const Event& event) {
         Slot& slot = slots_[event.slot];
         if (slot.task.next < slot.task.end) {
             const std::size_t sector = slot.task.next++;
-            events_.push(
-                {event.time + cost(sector).seconds * farm_.slowdown, &Simulation::write, event.slot, sector});
+            events_.push({load(slot, event.time, sector) + cost(sector).seconds * farm_.slowdown,
+                          &Simulation::write, event.slot, sector});
             return;
         }
         if (--slot.threads > 0)
@@ -220,6 +237,7 @@ class Simulation {
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
     std::size_t taken_ = 0, baked_ = 0;
     double baked_s_ = 0, end_ = 0;
+    double load_seen_s_ = 0;  // of the task that was last to load
     Report report_;
 };
 
@@ -237,6 +255,7 @@ int main(int argc, char** argv) {
     app.add_option("--batch", farm.batch_s);
     app.add_option("--launch", farm.launch_s);
     app.add_option("--launches-per-s", farm.launches_per_s);
+    app.add_option("--map-sectors", farm.map_sectors);
     app.add_option("--load", farm.load_s);
     app.add_option("--map-mb", farm.map_mb);
     app.add_option("--network-mb-s", farm.network_mb_s);
@@ -248,12 +267,12 @@ int main(int argc, char** argv) {
     const double cores = static_cast<double>(farm.nodes) * farm.threads;
     std::printf(
         "{\"nodes\": %zu, \"sectors\": %zu, \"seconds\": %.1f, \"efficiency\": %.4f, \"core_seconds\": %.0f, "
-        "\"tasks\": %zu, "
+        "\"tasks\": %zu, \"loads\": %zu, "
         "\"arrays\": %zu, \"read_gb\": %.1f, \"written_gb\": %.1f, \"network_mb_s\": %.1f, \"files_per_s\": "
         "%.0f, "
         "\"answers_per_s\": %.0f, \"tasks_per_s\": %.2f, \"recorded_s\": %.1f}\n",
         farm.nodes, farm.sectors, report.seconds, report.busy_s / (report.seconds * cores), report.busy_s,
-        report.tasks, report.arrays, report.read_mb / 1e3, report.written_mb / 1e3,
+        report.tasks, report.loads, report.arrays, report.read_mb / 1e3, report.written_mb / 1e3,
         (report.read_mb + report.written_mb) / report.seconds, report.files / report.seconds,
         static_cast<double>(farm.sectors) / report.seconds,
         static_cast<double>(report.tasks) / report.seconds, report.recorded_s);

@@ -55,10 +55,11 @@ class BatchTest : public testing::Test {
         write_array(options.array, array);
     }
 
-    [[nodiscard]] std::set<Digest> keys(std::size_t count = sectors.size()) const {
-        std::set<Digest> keys;
+    [[nodiscard]] std::vector<Digest> keys(std::size_t count = sectors.size()) const {
+        std::vector<Digest> keys;
         for (std::size_t n = 0; n < count; ++n)
-            keys.insert(answer_key(request(sectors[n], manifest)));
+            keys.push_back(answer_key(request(sectors[n], manifest)));
+        std::ranges::sort(keys);
         return keys;
     }
 
@@ -187,7 +188,7 @@ TEST(Answers, WhatIsDamagedIsNone) {
     test::write_file(path, text);
     EXPECT_EQ(std::get<SectorResult>(answers.read(key)->what).warnings, result.warnings);
     answers.remove(key);
-    EXPECT_TRUE(answers.among({key}).empty());
+    EXPECT_TRUE(answers.among(std::span(&key, 1)).empty());
 }
 
 TEST(ArrayFile, IsReadWholeAndByTask) {
