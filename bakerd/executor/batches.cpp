@@ -33,6 +33,11 @@ std::size_t tasks_of_array(std::size_t slots) {
     return std::max(2 * slots, least);
 }
 
+double pilot_batch_s(std::size_t sectors, std::size_t slots, int threads) {
+    const double share = static_cast<double>(sectors) / static_cast<double>(slots);
+    return std::clamp(share / threads, 1.0, 2.0);
+}
+
 double long_batch_s(double batch_s, double load_s, double most_s) {
     return std::max(batch_s, std::min(8 * load_s, most_s));
 }

@@ -26,6 +26,10 @@ struct BatchRule {
 // are sooner done, and closed.
 [[nodiscard]] std::size_t tasks_of_array(std::size_t slots);
 
+// The time of a batch where nothing is known of its sectors, and each counts as one second. Where there are
+// enough, each thread gets two: when the first has told what it took, the second goes on.
+[[nodiscard]] double pilot_batch_s(std::size_t sectors, std::size_t slots, int threads);
+
 // A task that takes `load_s` for its map should bake for longer, where nobody waits for it.
 [[nodiscard]] double long_batch_s(double batch_s, double load_s, double most_s);
 [[nodiscard]] double least_batch_s(double batch_s, double load_s);

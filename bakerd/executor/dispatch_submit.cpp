@@ -156,12 +156,12 @@ Dispatcher::Cut Dispatcher::cut(Priority priority) {
         // A few first, which tell what the others cost.
         keys.swap(unknown);
         seconds.assign(keys.size(), 1.0);
-        rule.batch_s = 0;
+        rule.batch_s = pilot_batch_s(keys.size(), rule.slots, rule.threads);
         rule.is_last = false;
         const bool is_learning = std::ranges::any_of(arrays_, [&](const auto& array) {
             return array.second.is_pilot && array.second.priority == priority;
         });
-        rule.max_batches = is_learning ? 0 : std::min(rule.max_batches, 2 * rule.slots);
+        rule.max_batches = is_learning ? 0 : std::min(rule.max_batches, rule.slots);
     }
     std::size_t begin = 0;
     for (const std::size_t end : cut_batches(seconds, rule)) {

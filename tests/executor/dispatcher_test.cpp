@@ -193,8 +193,8 @@ TEST_F(DispatcherTest, WhatSectorsCostIsLearntFromAFew) {
     add(1000, 0);
     pass(30s);
     ASSERT_EQ(cluster.arrays.size(), 1u);
-    EXPECT_EQ(cluster.arrays[0].tasks, 8u);
-    EXPECT_EQ(cluster.batch(0).size(), 2u);
+    EXPECT_EQ(cluster.arrays[0].tasks, 4u);
+    EXPECT_EQ(cluster.batch(0).size(), 4u) << "two for each thread: it loads the map once";
     EXPECT_EQ(cluster.arrays[0].memory_bytes, 0);
     answer(0);
     pass(2s);
@@ -217,13 +217,20 @@ TEST_F(DispatcherTest, ATaskThatLoadsALargeMapBakesForLonger) {
 TEST_F(DispatcherTest, AnArrayOfAJobThatIsNewFillsTheCluster) {
     add(50'000, 0);
     pass(2s);
-    EXPECT_EQ(cluster.arrays[0].tasks, 8u);
+    EXPECT_EQ(cluster.arrays[0].tasks, 4u);
     EXPECT_GT(queue.size(), 48'000u);
     answer(0);
     pass(2s);
     ASSERT_EQ(cluster.arrays.size(), 2u);
     EXPECT_EQ(cluster.arrays[1].tasks, 16u);
     EXPECT_EQ(cluster.batch(15).size(), 60u);
+}
+
+TEST_F(DispatcherTest, FewSectorsOfUnknownCostAreSpreadOverAllNodes) {
+    add(9, 0);
+    pass(2s);
+    EXPECT_EQ(cluster.arrays[0].tasks, 4u);
+    EXPECT_EQ(cluster.batch(0).size(), 2u);
 }
 
 // Of another map, or with other settings.

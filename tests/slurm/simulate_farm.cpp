@@ -94,11 +94,13 @@ class Simulation {
     Report run() {
         for (std::size_t slot = 0; slot < farm_.nodes; ++slot)
             idle_.push_back(slot);
-        // Before anything is known of the costs: two tasks a slot, of one sector a thread.
-        std::vector<std::size_t> ends;
-        for (std::size_t task = 0; task < 2 * farm_.nodes; ++task)
-            ends.push_back((task + 1) * static_cast<std::size_t>(farm_.threads));
-        submit(0, ends);
+        // Before anything is known of the costs.
+        BatchRule rule;
+        rule.batch_s = executor::pilot_batch_s(farm_.sectors, farm_.nodes, farm_.threads);
+        rule.threads = farm_.threads;
+        rule.max_batches = farm_.nodes;
+        rule.is_last = false;
+        submit(0, cut_batches(std::vector<double>(farm_.sectors, 1.0), rule));
         while (!events_.empty()) {
             const Event event = events_.top();
             events_.pop();

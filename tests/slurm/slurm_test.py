@@ -298,7 +298,7 @@ class Many(SlurmCase):
             file.write(f'#!/bin/sh\ndate +%s.%N >> {self.farm.path("squeues")}\nexec /usr/bin/squeue "$@"\n')
         os.chmod(os.path.join(tools, "squeue"), 0o755)
         daemon = self.slurm_daemon()
-        self.bake(daemon, "plan", field, *settings, "--yes", timeout=900)
+        self.bake(daemon, "plan", field, *settings, timeout=900)
         begin = time.monotonic()
         self.bake(daemon, "submit", field, *settings, "--yes", "--priority", "nightly", timeout=900)
         accepted = time.monotonic() - begin
