@@ -28,14 +28,15 @@ void print_heading() {
 }
 
 void print_row(const v1::Job& job) {
-    std::printf("%5s  %-9s  %-19s  %6lld/%6lld  %9s  %s\n",
+    std::printf("%5s  %-9s  %-19s  %6lld/%6lld  %9s  %s%s\n",
                 job_number(job).c_str(),
                 state_name(job.state()).c_str(),
                 local_time(job.create_time().seconds()).c_str(),
                 static_cast<long long>(job.sectors_done()),
                 static_cast<long long>(job.sectors_total()),
                 with_thousands(job.probes()).c_str(),
-                job.settings().preset().c_str());
+                job.settings().preset().c_str(),
+                job.priority() == v1::Job::NIGHTLY ? ", nightly" : "");
 }
 
 void print(const ServerConnection& connection, const v1::Job& job) {

@@ -142,8 +142,9 @@ std::string cluster_text(const v1::ClusterState& cluster) {
 }
 
 std::string one_line(const Job& job) {
-    std::string text = fmt::format("job {} {}: {} of {} sectors done",
+    std::string text = fmt::format("job {}{} {}: {} of {} sectors done",
                                    job_number(job),
+                                   job.priority() == Job::NIGHTLY ? " (nightly)" : "",
                                    state_name(job.state()),
                                    with_thousands(job.sectors_done()),
                                    with_thousands(job.sectors_total()));

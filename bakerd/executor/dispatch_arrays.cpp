@@ -49,9 +49,11 @@ void Dispatcher::load_arrays() {
         ArrayWatch watch(batches, options_.patience, now());
         // Who asks for them again finds their answers.
         std::ranges::sort(keys);
-        for (const Digest& answered : answers_.among(keys)) {
-            if (answers_.read(answered))
-                watch.settle(left_behind_.at(answered).task, answered);
+        const std::vector<Digest> answered = answers_.among(keys);
+        const auto answers = answers_.read(answered);
+        for (std::size_t n = 0; n < answered.size(); ++n) {
+            if (answers[n])
+                watch.settle(left_behind_.at(answered[n]).task, answered[n]);
         }
         // Whether the cluster heard of it is not known.
         arrays_.emplace(key, Array{Priority::nightly, std::move(batches), std::move(watch), 0, false});
@@ -218,10 +220,12 @@ void Dispatcher::remove_spent_answers() {
         std::ranges::partition(spent_, [this](const Spent& spent) {
             return now() - spent.delivered < spent_answers_stay || (spent.place && is_at_work(*spent.place));
         }).begin();
+    std::vector<Digest> gone;
     for (auto spent = kept; spent != spent_.end(); ++spent) {
         if (!sectors_.contains(spent->answer))
-            answers_.remove(spent->answer);
+            gone.push_back(spent->answer);
     }
+    answers_.remove(gone);
     spent_.erase(kept, spent_.end());
 }
 

@@ -173,9 +173,11 @@ void Dispatcher::collect_answers() {
             asked.push_back(key);
     }
     std::ranges::sort(asked);
-    for (const Digest& key : answers_.among(asked)) {
-        if (const auto answer = answers_.read(key); answer && sectors_.contains(key))
-            deliver(key, *answer);
+    const std::vector<Digest> answered = answers_.among(asked);
+    const auto answers = answers_.read(answered);
+    for (std::size_t n = 0; n < answered.size(); ++n) {
+        if (answers[n] && sectors_.contains(answered[n]))
+            deliver(answered[n], *answers[n]);
     }
     for (const Digest& key : fresh) {
         const auto left = sectors_.find(key);
@@ -197,7 +199,7 @@ void Dispatcher::deliver(const Digest& key, const worker::TaskAnswer& answer) {
     }
     const worker::ResultBlobs& blobs = result->blobs;
     if (!blobs_->has(blobs.file) || !blobs_->has(blobs.footprint) || !blobs_->has(blobs.inventory)) {
-        answers_.remove(key);
+        answers_.remove(std::span(&key, 1));
         settle(key, sector);
         if (++sector.losses < max_losses)
             fresh_.push_back(key);

@@ -1,6 +1,12 @@
 #include "bakerd/farm/open_store.h"
 
+#include "bakerd/store/host_name.h"
 #include "bakerd/store/owner.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
 
 namespace drtv::farm {
 
@@ -19,7 +25,10 @@ Result<std::unique_ptr<store::BlobStore>> open_store(const std::string& store_fo
     if (!known)
         return tl::unexpected(known.error());
     const bool is_known = *known == store_folder;
-    if (auto claimed = store::claim_folder(store_folder, *id, is_known); !claimed)
+    std::error_code code;
+    const std::string place =
+        fmt::format("{} on {}", std::filesystem::absolute(folder.path(), code).string(), store::host_name());
+    if (auto claimed = store::claim_folder(store_folder, *id, place, is_known); !claimed)
         return tl::unexpected(claimed.error());
     if (auto marked = is_known ? Result<void>() : store::write_mark(mark, store_folder); !marked)
         return tl::unexpected(marked.error());

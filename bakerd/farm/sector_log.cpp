@@ -14,8 +14,7 @@ constexpr std::size_t last_lines = 20;
 
 std::string why_none(const JobSectorView& view) {
     if (view.row.state == SectorState::waiting)
-        return view.running ? "is being baked: it has a log when its task has ended"
-                            : "has not been baked yet";
+        return view.running ? "is being baked: it has a log when its task has ended" : "has not been baked";
     if (view.row.origin == SectorOrigin::hit || view.row.origin == SectorOrigin::near_hit)
         return "was not baked: an earlier result was reused";
     return "was not baked on a cluster: what was said of it stands in the daemon's own log";

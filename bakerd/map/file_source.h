@@ -26,7 +26,7 @@ struct FileFailure {
 };
 
 // Gives the bytes of the file with this path, relative to the map's folder, `/` between names. Must be safe
-// to call again with the same path.
+// to call again with the same path, and from several threads.
 using FileSource = std::function<tl::expected<FileBytes, FileFailure>(const std::string& path)>;
 
 // Reads from the folder. Symbolic links are followed; a path is never looked up outside by "..", because the

@@ -13,6 +13,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
+#include <future>
+#include <thread>
 
 namespace drtv::map {
 namespace {
@@ -55,13 +58,42 @@ void warn_of_extensions(const GltfDocument& document, Map& map) {
     }
 }
 
+// Documents in the order of their paths; the next ones are loaded meanwhile. Some, because a document takes
+// several times its file's memory.
+class Documents {
+  public:
+    // REQUIRES: both outlive this.
+    Documents(std::span<const std::string> paths, const FileSource& files) : left_(paths), files_(files) {
+        load_ahead();
+    }
+
+    [[nodiscard]] tl::expected<GltfDocument, std::string> next() {
+        auto document = ahead_.front().get();
+        ahead_.pop_front();
+        load_ahead();
+        return document;
+    }
+
+  private:
+    void load_ahead() {
+        const std::size_t most = std::clamp(std::thread::hardware_concurrency(), 1u, 4u);
+        for (; ahead_.size() < most && !left_.empty(); left_ = left_.subspan(1))
+            ahead_.push_back(std::async(std::launch::async, load_document, left_.front(), std::cref(files_)));
+    }
+
+    std::span<const std::string> left_;
+    const FileSource& files_;
+    std::deque<std::future<tl::expected<GltfDocument, std::string>>> ahead_;
+};
+
 tl::expected<Map, std::string> import_files(std::span<const std::string> paths, const FileSource& files) {
     Map map;
     Shared shared;
     std::vector<FileEnd> ends;
     RolesFiles roles(files);
+    Documents documents(paths, files);
     for (const std::string& path : paths) {
-        auto document = load_document(path, files);
+        auto document = documents.next();
         if (!document)
             return tl::unexpected(document.error());
         if (auto applied = roles.apply(*document); !applied)

@@ -27,6 +27,22 @@ bool is_flat(const glm::dmat4& world_from_object) {
     return volume <= 1e-9 * side * side * side;
 }
 
+// By vertices as they are placed; false where one of them is far. Most of a large map's import.
+bool extend(Bounds& bounds, std::span<const glm::vec3> positions, const glm::mat4x3& placed) {
+    glm::vec3 nothing(0);  // NaN where a vertex is, which bounds would not show
+    for (const glm::vec3& position : positions) {
+        const glm::vec3 corner = placed * glm::vec4(position, 1);
+        bounds.extend(corner);
+        nothing += 0.0f * corner;
+    }
+    constexpr auto near_m = static_cast<float>(max_distance_m / 2);  // along each axis
+    if (nothing == glm::vec3(0) && glm::all(glm::lessThan(bounds.high, glm::vec3(near_m))) &&
+        glm::all(glm::greaterThan(bounds.low, glm::vec3(-near_m))))
+        return true;
+    return std::ranges::none_of(
+        positions, [&](const glm::vec3& position) { return is_far(placed * glm::vec4(position, 1)); });
+}
+
 }  // namespace
 
 bool shines(const Mesh& mesh, const Map& map) {
@@ -120,12 +136,8 @@ Imported MeshPlacer::add_object(MeshPlace place, const NodePurpose& purpose) {
         object.world_from_object = glm::mat4x3(1);
     }
     for (const Primitive& primitive : map_.meshes[object.mesh].primitives) {
-        for (const glm::vec3& position : primitive.positions) {
-            const glm::vec3 corner = object.world_from_object * glm::vec4(position, 1);
-            if (is_far(corner))
-                return tl::unexpected(std::string(far_sentence));  // NaN too, and bounds would not show it
-            object.bounds.extend(corner);
-        }
+        if (!extend(object.bounds, primitive.positions, object.world_from_object))
+            return tl::unexpected(std::string(far_sentence));
     }
     if (shines(map_.meshes[object.mesh], map_))
         object.light_group = light_group_of(purpose.light_group, map_);

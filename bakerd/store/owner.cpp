@@ -6,9 +6,22 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace drtv::store {
+
+namespace {
+
+// Who wrote the file before it told the place is known by its id.
+std::string place_of_owner(const std::string& path, const std::string& owner) {
+    const auto bytes = read_all(path);
+    const auto lines = bytes ? lines_of(text_of_bytes(*bytes)) : std::vector<std::string_view>();
+    return lines.size() < 2 || lines[1].empty() ? owner : as_utf8(lines[1]);
+}
+
+}  // namespace
 
 Result<std::string> read_mark(const std::string& path) {
     std::error_code code;
@@ -26,7 +39,10 @@ Result<void> write_mark(const std::string& path, const std::string& text) {
     return write_durably(path.substr(0, path.rfind('/')), path, bytes_of_text(line));
 }
 
-Result<void> claim_folder(const std::string& folder, const std::string& owner, bool is_known) {
+Result<void> claim_folder(const std::string& folder,
+                          const std::string& owner,
+                          const std::string& place,
+                          bool is_known) {
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     if (code)
@@ -43,7 +59,7 @@ Result<void> claim_folder(const std::string& folder, const std::string& owner, b
             fmt::format("the store {} belongs to another daemon's data folder ({}): give each daemon a "
                         "store of its own, or remove {} if that daemon is no more",
                         folder,
-                        *known,
+                        place_of_owner(path, *known),
                         path));
     if (is_known)
         return fail(ErrorCode::failed_precondition,
@@ -52,7 +68,7 @@ Result<void> claim_folder(const std::string& folder, const std::string& owner, b
                                 folder,
                                 owner,
                                 path));
-    return write_mark(path, owner);
+    return write_mark(path, owner + "\n" + place);
 }
 
 }  // namespace drtv::store

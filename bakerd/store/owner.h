@@ -11,8 +11,12 @@ namespace drtv::store {
 [[nodiscard]] Result<std::string> read_mark(const std::string& path);
 [[nodiscard]] Result<void> write_mark(const std::string& path, const std::string& text);
 
-// Makes the folder when it is missing, and writes `owner` into its file "owner". Fails when another one
-// stands there, or none where the folder `is_known` to be the owner's: it is not mounted, then.
-[[nodiscard]] Result<void> claim_folder(const std::string& folder, const std::string& owner, bool is_known);
+// Makes the folder when it is missing, and writes `owner` into its file "owner", with a second line that
+// tells people where it is. Fails when another one stands there, or none where the folder `is_known` to be
+// the owner's: it is not mounted, then.
+[[nodiscard]] Result<void> claim_folder(const std::string& folder,
+                                        const std::string& owner,
+                                        const std::string& place,
+                                        bool is_known);
 
 }  // namespace drtv::store

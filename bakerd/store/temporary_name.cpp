@@ -1,10 +1,11 @@
 #include "bakerd/store/temporary_name.h"
 
+#include "bakerd/store/host_name.h"
+
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <charconv>
@@ -16,11 +17,6 @@
 
 namespace drtv::store {
 namespace {
-
-std::string host_name() {
-    std::array<char, 256> name{};
-    return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
 
 // In which a process's number means this process: machines and containers may have one name, and a machine
 // that has started again gives its numbers again.

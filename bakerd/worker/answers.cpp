@@ -10,15 +10,37 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 namespace drtv::worker {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+
+namespace {
+
+// On threads that wait for the store most of the time.
+template <class Work>
+void for_each_number(std::size_t count, const Work& work) {
+    constexpr std::size_t max_threads = 8;
+    constexpr std::size_t least = 16;  // of a thread
+    std::atomic<std::size_t> next = 0;
+    const auto run = [&] {
+        for (std::size_t n = next++; n < count; n = next++)
+            work(n);
+    };
+    std::vector<std::jthread> threads;
+    while (threads.size() + 1 < std::min(max_threads, count / least))
+        threads.emplace_back(run);
+    run();
+}
+
+}  // namespace
 
 Digest answer_key(const BakeRequest& request) {
     BakeRequest alone = request;
@@ -105,8 +127,14 @@ std::optional<TaskAnswer> Answers::read(const Digest& key) const {
     return read;
 }
 
-void Answers::remove(const Digest& key) const {
-    ::unlink(path_of(key).c_str());
+std::vector<std::optional<TaskAnswer>> Answers::read(std::span<const Digest> keys) const {
+    std::vector<std::optional<TaskAnswer>> answers(keys.size());
+    for_each_number(keys.size(), [&](std::size_t n) { answers[n] = read(keys[n]); });
+    return answers;
+}
+
+void Answers::remove(std::span<const Digest> keys) const {
+    for_each_number(keys.size(), [&](std::size_t n) { ::unlink(path_of(keys[n]).c_str()); });
 }
 
 }  // namespace drtv::worker

@@ -35,11 +35,13 @@ class Answers {
     // a name that is not there yet would hide it for a minute.
     [[nodiscard]] std::vector<Digest> among(std::span<const Digest> keys) const;
 
-    // Nothing where it cannot be read, or is none.
+    // Nothing where it cannot be read, or is none. Of many with some threads of its own: over a network each
+    // file is a wait of a millisecond.
     [[nodiscard]] std::optional<TaskAnswer> read(const Digest& key) const;
+    [[nodiscard]] std::vector<std::optional<TaskAnswer>> read(std::span<const Digest> keys) const;
 
-    // Nothing happens when there is none.
-    void remove(const Digest& key) const;
+    // Nothing happens where there is none.
+    void remove(std::span<const Digest> keys) const;
 
   private:
     explicit Answers(std::string folder) : folder_(std::move(folder)) {}

@@ -4,6 +4,8 @@
     slurm_test.py --bin build/ci/bin Short             what tests/run.sh runs: three minutes at most
     slurm_test.py --bin build/ci/bin Faults            1,000 sectors, a node killed every 20 s; a quarter of an hour
     slurm_test.py --bin build/ci/bin Many              25,000 sectors
+    slurm_test.py --bin build/ci/bin Edits             an artist's, while a night fills the cluster; some minutes
+    slurm_test.py --bin build/ci/bin --data ../shared/data Simulated     beside simulate_farm; some minutes
     slurm_test.py --bin build/ci/bin --data ../shared/data SameBytes
 """
 import argparse
@@ -12,6 +14,7 @@ import json
 import os
 import re
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -38,8 +41,8 @@ exit $status
 """
 
 
-def write_field(path, side):
-    """A map of side x side sectors, of which each is quick to bake: a lawn with a wall in each."""
+def write_field(path, side, height=16):
+    """A map of side x side sectors, of which each is quick to bake: a lawn with a wall in each, that high in the first."""
     quads = {}
     for j in range(side):
         for i in range(side):
@@ -51,6 +54,17 @@ def write_field(path, side):
                 (x + 56, y + 30, 16 + (i + j) % 5),
                 (x + 8, y + 30, 16),
             ]
+    quads["wall 0 0"][3] = (8, 30, height)
+    return write_map(path, **quads)
+
+
+def write_stones(path, side):
+    """A map of side x side sectors that take next to no time: in each a stone to stand on."""
+    quads = {}
+    for j in range(side):
+        for i in range(side):
+            x, y = 64 * i + 30, 64 * j + 30
+            quads[f"stone {i} {j}"] = [(x, y, 0), (x + 4, y, 0), (x + 4, y + 4, 0), (x, y + 4, 0)]
     return write_map(path, **quads)
 
 
@@ -130,7 +144,7 @@ class SlurmCase(unittest.TestCase):
             left = os.listdir(os.path.join(self.store, part))
             self.assertEqual([name for name in left if not self._is_of_killed(name)], [], part)
         with open(os.path.join(self.store, "owner"), encoding="utf-8") as file:
-            arrays = os.path.join(self.store, "arrays", file.read().strip())
+            arrays = os.path.join(self.store, "arrays", file.readline().strip())
         wait_until(lambda: os.listdir(arrays) == ["tmp"], 120, "the arrays' end")
 
     @staticmethod
@@ -280,27 +294,16 @@ class Many(SlurmCase):
             return int(re.search(r"VmRSS:\s+(\d+)", file.read()).group(1)) / 1024
 
     def test_25000_sectors_are_one_job(self):
-        field = write_field(self.farm.path("map/field.gltf"), 158)
-        settings = [
-            "--preset",
-            "draft",
-            "--set",
-            "rays=16",
-            "--set",
-            "bounces=0",
-            "--set",
-            "min_distance=16",
-            "--set",
-            "reach=8",
-        ]
+        stones = write_stones(self.farm.path("map/stones.gltf"), 158)
+        settings = ["--preset", "draft", "--set", "rays=16", "--set", "bounces=0"]
         tools = self.farm.path("tools")
         with open(os.path.join(tools, "squeue"), "w", encoding="utf-8") as file:
             file.write(f'#!/bin/sh\ndate +%s.%N >> {self.farm.path("squeues")}\nexec /usr/bin/squeue "$@"\n')
         os.chmod(os.path.join(tools, "squeue"), 0o755)
         daemon = self.slurm_daemon()
-        self.bake(daemon, "plan", field, *settings, timeout=900)
+        self.bake(daemon, "plan", stones, *settings, timeout=900)
         begin = time.monotonic()
-        self.bake(daemon, "submit", field, *settings, "--yes", "--priority", "nightly", timeout=900)
+        self.bake(daemon, "submit", stones, *settings, "--yes", "--priority", "nightly", timeout=900)
         accepted = time.monotonic() - begin
         peaks = []
         while self.job(daemon)["state"] in ("running", "waiting"):
@@ -318,6 +321,75 @@ class Many(SlurmCase):
         )
         self.assertLess(accepted, 5)
         self.assertGreaterEqual(min(gaps), 4.9)
+        self.assertLess(max(peaks) - peaks[0], 100)
+
+
+class Edits(SlurmCase):
+    """Edits of an artist while a night fills the cluster with batches of the usual length."""
+
+    def test_the_first_sector_comes_soon(self):
+        field = write_field(self.farm.path("map/field.gltf"), 32)
+        settings = ["--preset", "draft", "--set", f"rays={OPTIONS.rays}"]
+        daemon = self.slurm_daemon()
+        self.bake(daemon, "submit", field, *settings, "--yes", "--priority", "nightly")
+
+        def is_full():
+            cluster = self.job(daemon)["cluster"]
+            return self.job(daemon)["sectors_done"] > 100 and cluster["tasks_running"] == self.NODES
+
+        wait_until(is_full, 300, "a full cluster")
+        waits = []
+        for edit in range(1, 6):
+            edited = write_field(self.farm.path(f"edit{edit}/field.gltf"), 32, height=16 + edit)
+            begin = time.monotonic()
+            self.bake(daemon, "submit", edited, *settings, "--yes", "--region", "0,0,127,127")
+            wait_until(lambda: self.job(daemon, edit + 1)["sectors_done"] > 0, 600, "the edit's first sector")
+            waits.append(time.monotonic() - begin)
+            night = self.job(daemon)
+            self.assertEqual(night["state"], "running", "the night was to fill the cluster")
+            time.sleep(13)
+        print(f"first sectors of edits after {', '.join(f'{wait:.0f}' for wait in waits)} s", flush=True)
+        self.assertLess(max(waits), 120)
+
+
+class Simulated(SlurmCase):
+    """A night on four nodes takes what simulate_farm says, fed with what the same sectors cost on this machine."""
+
+    def test_four_nodes(self):
+        path = os.path.join(OPTIONS.data, "maps/volcano_island.glb")
+        settings = ["--preset", "pc", "--exact"]
+        if not os.path.exists(path):
+            path = write_field(self.farm.path("map/field.gltf"), 16)
+            settings = ["--preset", "draft", "--set", "rays=32768"]
+        # As many threads share the processors as nodes will.
+        local = self.farm.daemon("local_data", "--threads", str(self.NODES))
+        begin = time.monotonic()
+        self.bake(local, "plan", path, *settings)
+        load_s = time.monotonic() - begin
+        self.bake(local, "submit", path, *settings, "--wait", "--yes", timeout=3600)
+        local.stop()
+        costs = self.farm.path("costs.json")
+        with open(costs, "w", encoding="utf-8") as file:
+            subprocess.run(
+                [sys.executable, os.path.join(HERE, "sector_costs.py"), self.farm.path("local_data")],
+                stdout=file,
+                check=True,
+            )
+        with open(costs, encoding="utf-8") as file:
+            sectors = len(json.load(file)["sectors"])
+        # Nodes load their maps beside each other.
+        load_s *= self.NODES * self.THREADS / os.cpu_count()
+        options = f"--nodes {self.NODES} --threads {self.THREADS} --sectors {sectors} --batch 10 --load {load_s:.1f}"
+        simulate = os.path.join(OPTIONS.bin, "../tests/simulate_farm")
+        said = subprocess.run([simulate, costs, *options.split()], capture_output=True, check=True, text=True)
+        simulated = json.loads(said.stdout)
+        daemon = self.slurm_daemon("--slurm-batch", "10")
+        begin = time.monotonic()
+        self.bake(daemon, "submit", path, *settings, "--wait", "--yes", "--priority", "nightly", timeout=3600)
+        # The client uploads the map, and the daemon looks at it.
+        took = time.monotonic() - begin - load_s
+        print(f"simulate_farm {options}: {simulated}; on the cluster {took:.1f} s", flush=True)
+        self.assertLess(abs(simulated["seconds"] / took - 1), 0.15)
 
 
 class SameBytes(SlurmCase):
