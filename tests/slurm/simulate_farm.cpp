@@ -38,7 +38,7 @@ struct Farm {
     double map_mb = 100;          // that a task reads for it
     double network_mb_s = 1100;   // of the store
     double files_per_s = 2000;    // that the store can make durable
-    double daemon_per_s = 1000;   // answers that the daemon can record
+    double daemon_per_s = 2500;   // answers that the daemon can record
     double look_s = 1.5;          // between looks for answers
     double slowdown = 1;          // of sectors, where cores are fewer than threads
 };
