@@ -34,7 +34,7 @@ void ArrayFolder::remove(const std::string& key) const {
     ::unlink(path_of(key).c_str());
 }
 
-std::vector<std::pair<std::string, worker::ArrayFile>> ArrayFolder::all() const {
+store::Result<std::vector<std::pair<std::string, worker::ArrayFile>>> ArrayFolder::all() const {
     std::vector<std::pair<std::string, worker::ArrayFile>> arrays;
     std::error_code code;
     for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code)) {
@@ -42,11 +42,9 @@ std::vector<std::pair<std::string, worker::ArrayFile>> ArrayFolder::all() const 
         if (key == "tmp")
             continue;
         const auto bytes = store::read_all(entry->path().string());
-        // Another start may be able to.
-        if (!bytes) {
-            spdlog::warn("array {} is left alone: {}", key, bytes.error().message);
-            continue;
-        }
+        // A store that is ill now: what its tasks bake should not be baked again.
+        if (!bytes)
+            return tl::unexpected(bytes.error());
         auto array = worker::decode_array(store::text_of_bytes(*bytes));
         if (!array)
             spdlog::warn("array {}: {}", key, array.error());

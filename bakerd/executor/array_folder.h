@@ -22,8 +22,8 @@ class ArrayFolder {
     // Tasks of it that begin later end at once.
     void remove(const std::string& key) const;
 
-    // One that cannot be read has no batches.
-    [[nodiscard]] std::vector<std::pair<std::string, worker::ArrayFile>> all() const;
+    // One that is no list of an array's sectors has no batches.
+    [[nodiscard]] store::Result<std::vector<std::pair<std::string, worker::ArrayFile>>> all() const;
 
     [[nodiscard]] std::string path_of(const std::string& key) const;
 

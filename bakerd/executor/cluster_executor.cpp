@@ -10,19 +10,23 @@ store::Result<std::unique_ptr<ClusterExecutor>> ClusterExecutor::open(std::uniqu
                                                                       LocalExecutor::Options local,
                                                                       store::BlobStore& blobs,
                                                                       Callbacks callbacks) {
+    const std::string store_folder = options.store_folder;
+    const std::string owner = options.owner;
     auto dispatcher = Dispatcher::open(std::move(options), *cluster, blobs, std::move(callbacks));
     if (!dispatcher)
         return tl::unexpected(dispatcher.error());
-    return std::unique_ptr<ClusterExecutor>(
-        new ClusterExecutor(std::move(cluster), std::move(*dispatcher), std::move(local)));
+    return std::unique_ptr<ClusterExecutor>(new ClusterExecutor(
+        std::move(cluster), std::move(*dispatcher), Sweeper(store_folder, owner), std::move(local)));
 }
 
 ClusterExecutor::ClusterExecutor(std::unique_ptr<Cluster> cluster,
                                  Dispatcher dispatcher,
+                                 Sweeper sweeper,
                                  LocalExecutor::Options local)
     : cluster_(std::move(cluster)),
       dispatcher_(std::move(dispatcher)),
-      local_(std::move(local), {[](Priority) { return std::nullopt; }, {}, {}}),
+      local_(std::move(local), {[](Priority) { return std::nullopt; }, {}, {}, {}}),
+      sweeper_(std::move(sweeper)),
       thread_([this] { run(); }) {}
 
 ClusterExecutor::~ClusterExecutor() {

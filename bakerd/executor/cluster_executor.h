@@ -5,6 +5,7 @@
 #include "bakerd/executor/dispatcher.h"
 #include "bakerd/executor/executor.h"
 #include "bakerd/executor/local_executor.h"
+#include "bakerd/executor/sweeper.h"
 #include "bakerd/store/blob_store.h"
 
 #include <chrono>
@@ -39,7 +40,10 @@ class ClusterExecutor final : public Executor {
     void stop(std::chrono::milliseconds patience) override;
 
   private:
-    ClusterExecutor(std::unique_ptr<Cluster> cluster, Dispatcher dispatcher, LocalExecutor::Options local);
+    ClusterExecutor(std::unique_ptr<Cluster> cluster,
+                    Dispatcher dispatcher,
+                    Sweeper sweeper,
+                    LocalExecutor::Options local);
     void run();
 
     const std::unique_ptr<Cluster> cluster_;
@@ -52,6 +56,7 @@ class ClusterExecutor final : public Executor {
     bool stopping_ = false;  // guarded by mutex_
     ClusterState state_;     // guarded by mutex_; after the last step
 
+    const Sweeper sweeper_;
     std::thread thread_;
 };
 

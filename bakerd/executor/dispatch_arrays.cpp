@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <csignal>
 
 namespace drtv::executor {
 namespace {
@@ -14,11 +15,25 @@ namespace {
 constexpr int max_releases = 3;
 constexpr std::chrono::minutes spent_answers_stay(1);
 constexpr std::chrono::minutes nodes_stay_excluded(10);
+// After the start, for what an earlier run has left at work.
+constexpr std::chrono::minutes all_ask_within(1);
 
 // The sentence with which a task's log ends; it may be longer than what fits into a line of ours.
 std::string last_words(const std::string& log) {
     const auto bytes = store::read_all(log);
     return bytes ? store::as_utf8(store::last_line(store::text_of_bytes(*bytes)).substr(0, 300)) : "";
+}
+
+// Neither its sectors' nor its node's.
+bool is_no_fault(const EndedTask& ended, int losses) {
+    if (!ended.last)
+        return true;
+    // Nodes are shut down with TERM; so is, by some sites, what takes too much memory.
+    constexpr int few = 2;
+    if (ended.last->state == TaskState::lost)
+        return ended.last->exit_status != 128 + SIGTERM || losses < few;
+    // Its answer was lost.
+    return ended.last->state == TaskState::done && ended.last->exit_status == 0;
 }
 
 std::string join(const std::string& what, const std::string& words) {
@@ -27,8 +42,11 @@ std::string join(const std::string& what, const std::string& words) {
 
 }  // namespace
 
-void Dispatcher::load_arrays() {
-    for (auto& [key, file] : folder_.all()) {
+store::Result<void> Dispatcher::load_arrays() {
+    auto arrays = folder_.all();
+    if (!arrays)
+        return tl::unexpected(arrays.error());
+    for (auto& [key, file] : *arrays) {
         if (file.batches.empty() || file.build != worker::this_build()) {
             spdlog::info("array {} is another build's: it is cancelled", key);
             cluster_->cancel(key);
@@ -58,6 +76,21 @@ void Dispatcher::load_arrays() {
         // Whether the cluster heard of it is not known.
         arrays_.emplace(key, Array{Priority::nightly, std::move(batches), std::move(watch), 0, false});
     }
+    return {};
+}
+
+// What nobody asks for, of an earlier run's arrays, was recorded then: its answer may be gone, and its tasks
+// have nothing to do.
+void Dispatcher::settle_left_behind() {
+    if (left_behind_.empty() || now() < opened_ + all_ask_within ||
+        !std::ranges::all_of(ready_, [](const Ready& ready) { return ready.is_dry; }))
+        return;
+    for (const auto& [key, place] : left_behind_) {
+        const auto array = arrays_.find(place.array);
+        if (array != arrays_.end() && !sectors_.contains(key))
+            array->second.watch.settle(place.task, key);
+    }
+    left_behind_.clear();
 }
 
 void Dispatcher::ask_queue() {
@@ -101,11 +134,20 @@ bool Dispatcher::is_to_be_let_go(Array& array, const ClusterTask& task) {
            });
 }
 
+// Another array has its sectors since, or nobody wants them.
+bool Dispatcher::is_missed(const std::string& array, const EndedTask& ended) const {
+    return std::ranges::any_of(ended.unanswered, [&](const Digest& key) {
+        const auto found = sectors_.find(key);
+        return found != sectors_.end() && found->second.place && found->second.place->array == array;
+    });
+}
+
 void Dispatcher::judge(const std::string& key, Array& array) {
     std::vector<ClusterTask> waiting = array.watch.alive();
     std::erase_if(waiting, [&](const ClusterTask& task) { return !is_to_be_let_go(array, task); });
     cluster_->nudge(waiting);
-    const std::vector<EndedTask> ended = array.watch.take_ended(now());
+    std::vector<EndedTask> ended = array.watch.take_ended(now());
+    std::erase_if(ended, [&](const EndedTask& task) { return !is_missed(key, task); });
     for (const EndedTask& task : ended)
         try_again(key, array, task);
     const std::size_t lost = ended.size() + array.watch.take_requeued();
@@ -169,12 +211,12 @@ void Dispatcher::try_again(const std::string& array_key, const Array& array, con
         sector.place.reset();
         if (state == TaskState::out_of_memory)
             costs_.learn_too_little(sector.request, std::max(array.memory_bytes, std::int64_t{1} << 30));
-        if (state == TaskState::lost || is_of_node)
+        const bool is_lost = is_of_node || is_no_fault(ended, sector.losses);
+        if (is_lost)
             sector.losses += was_refused ? 0 : 1;
         else
             ++sector.failures;
-        sector.alone = sector.alone || (ended.sectors > 1 && !is_of_node && state != TaskState::lost &&
-                                        state != TaskState::cancelled);
+        sector.alone = sector.alone || (ended.sectors > 1 && !is_lost && state != TaskState::cancelled);
         // Without the earlier result: it may be what the worker cannot bear.
         if (sector.failures > 0)
             sector.request.earlier.reset();
@@ -216,10 +258,11 @@ bool Dispatcher::is_at_work(const Place& place) const {
 
 // Until then a task that runs twice finds them, and a daemon that starts again.
 void Dispatcher::remove_spent_answers() {
-    const auto kept =
-        std::ranges::partition(spent_, [this](const Spent& spent) {
-            return now() - spent.delivered < spent_answers_stay || (spent.place && is_at_work(*spent.place));
-        }).begin();
+    const auto kept = std::ranges::partition(spent_, [this](const Spent& spent) {
+                          return now() - spent.delivered < spent_answers_stay ||
+                                 (spent.place && is_at_work(*spent.place)) ||
+                                 !std::ranges::all_of(spent.ids, callbacks_.is_recorded);
+                      }).begin();
     std::vector<Digest> gone;
     for (auto spent = kept; spent != spent_.end(); ++spent) {
         if (!sectors_.contains(spent->answer))

@@ -1,7 +1,6 @@
 #include "bakerd/executor/dispatcher.h"
 
 #include "bakerd/store/owner.h"
-#include "bakerd/store/sweep.h"
 #include "bakerd/worker/build_id.h"
 
 #include <fmt/format.h>
@@ -16,19 +15,6 @@ namespace {
 // Taken up ahead of what is at work: before it is known how many fill an array, and at most.
 constexpr std::size_t few_ready = 1000;
 constexpr std::size_t max_ready = 400'000;
-
-constexpr std::chrono::hours lost_answers_stay(24 * 7);
-constexpr std::chrono::hours logs_stay(24 * 30);
-constexpr std::chrono::hours sweep_every(24);
-
-void sweep(const DispatchOptions& options) {
-    const std::string& store = options.store_folder;
-    store::remove_leftovers(store + "/answers/tmp");
-    store::remove_leftovers(fmt::format("{}/arrays/{}/tmp", store, options.owner));
-    // Of tasks that ended after their array had been closed.
-    store::remove_old_files(store + "/answers", lost_answers_stay);
-    store::remove_old_files(store + "/logs", logs_stay);
-}
 
 }  // namespace
 
@@ -49,7 +35,8 @@ store::Result<Dispatcher> Dispatcher::open(DispatchOptions options,
         return tl::unexpected(marked.error());
     Dispatcher dispatcher(
         std::move(options), cluster, blobs, std::move(callbacks), std::move(*folder), std::move(*answers));
-    dispatcher.load_arrays();
+    if (auto loaded = dispatcher.load_arrays(); !loaded)
+        return tl::unexpected(loaded.error());
     return dispatcher;
 }
 
@@ -65,19 +52,16 @@ Dispatcher::Dispatcher(DispatchOptions options,
       callbacks_(std::move(callbacks)),
       folder_(std::move(folder)),
       answers_(std::move(answers)),
+      opened_(now()),
       next_answers_(now()),
       next_queue_(now()),
-      next_view_(now()),
-      next_sweep_(now()) {}
+      next_view_(now()) {}
 
 Dispatcher::Time Dispatcher::step() {
-    if (now() >= next_sweep_) {
-        sweep(options_);
-        next_sweep_ = now() + sweep_every;
-    }
     if (now() >= next_view_)
         view_cluster();
     pull();
+    settle_left_behind();
     if (now() >= next_answers_ || !fresh_.empty())
         collect_answers();
     if (now() >= next_queue_) {
@@ -219,7 +203,7 @@ void Dispatcher::finish(const Digest& key,
                         const std::string& log) {
     const auto found = sectors_.find(key);
     Sector sector = std::move(found->second);
-    spent_.push_back({key, sector.place, now()});
+    spent_.push_back({key, sector.ids, sector.place, now()});
     settle(key, sector);
     sectors_.erase(found);
     for (const std::uint64_t id : sector.ids)

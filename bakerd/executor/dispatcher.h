@@ -96,6 +96,7 @@ class Dispatcher {
     // An answer that was delivered.
     struct Spent {
         Digest answer;
+        std::vector<std::uint64_t> ids;  // of the caller
         std::optional<Place> place;
         Time delivered;
     };
@@ -120,7 +121,7 @@ class Dispatcher {
                Executor::Callbacks callbacks,
                ArrayFolder folder,
                worker::Answers answers);
-    void load_arrays();
+    [[nodiscard]] store::Result<void> load_arrays();
     [[nodiscard]] Time now() const { return options_.clock(); }
 
     [[nodiscard]] Ready& ready(Priority priority) { return ready_[static_cast<std::size_t>(priority)]; }
@@ -144,9 +145,11 @@ class Dispatcher {
     void give_up_unwanted();
 
     // dispatch_arrays.cpp: arrays and the queue.
+    void settle_left_behind();
     void ask_queue();
     [[nodiscard]] bool is_to_be_let_go(Array& array, const ClusterTask& task);
     [[nodiscard]] bool is_fault_of_node(const EndedTask& ended, const std::string& printed);
+    [[nodiscard]] bool is_missed(const std::string& array, const EndedTask& ended) const;
     void judge(const std::string& key, Array& array);
     void try_again(const std::string& array_key, const Array& array, const EndedTask& ended);
     void close_arrays();
@@ -184,12 +187,13 @@ class Dispatcher {
     std::map<std::string, Exclusion> excluded_;       // nodes
     Costs costs_;
     std::optional<ClusterView> view_;
+    Time opened_;
     Time viewed_;           // when it was asked for last
     Time shaken_;           // when tasks were lost last
     std::size_t lost_ = 0;  // tasks
     // What the cluster could not do when it was asked last; empty: it could.
     std::string list_trouble_, view_trouble_;
-    Time next_answers_, next_queue_, next_view_, next_sweep_;
+    Time next_answers_, next_queue_, next_view_;
 };
 
 }  // namespace drtv::executor

@@ -59,6 +59,8 @@ class Executor {
         std::function<void(SectorEnd end)> finished;
         // True where nobody wants the sector any more: it is not heard of again.
         std::function<bool(std::uint64_t id)> give_up;
+        // True where nothing is left to do with what came of the sector.
+        std::function<bool(std::uint64_t id)> is_recorded;
     };
 
     virtual ~Executor() = default;

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 namespace drtv::executor {
@@ -104,6 +105,7 @@ tl::expected<std::vector<ClusterTask>, std::string> Slurm::list(std::span<const 
     const auto said =
         run({"squeue",
              "--me",
+             "--all",
              "--noheader",
              "--array",
              "--states=all",
@@ -123,13 +125,31 @@ tl::expected<std::vector<ClusterTask>, std::string> Slurm::list(std::span<const 
     return tasks;
 }
 
+// Where sbatch puts tasks; empty: into the default one.
+std::string Slurm::partition() const {
+    std::string named = options_.partition;
+    const std::vector<std::string>& more = options_.arguments;
+    for (std::size_t n = 0; n < more.size(); ++n) {
+        constexpr std::string_view by_name = "--partition=";
+        if ((more[n] == "-p" || more[n] == "--partition") && n + 1 < more.size())
+            named = more[n + 1];
+        else if (more[n].starts_with(by_name))
+            named = more[n].substr(by_name.size());
+        else if (more[n].starts_with("-p") && more[n].size() > 2)
+            named = more[n].substr(2);
+    }
+    const char* const site = std::getenv("SBATCH_PARTITION");
+    return named.empty() && site != nullptr ? site : named;
+}
+
 tl::expected<ClusterView, std::string> Slurm::view() {
     const auto config = run({"scontrol", "show", "config"});
     if (!config)
         return Failure(config.error());
     std::vector<std::string> ask = {"sinfo", "--noheader", "--Node", "--format=%N|%c|%m|%T|%P|%E"};
-    if (!options_.partition.empty())
-        ask.push_back("--partition=" + options_.partition);
+    const std::string partition = this->partition();
+    if (!partition.empty())
+        ask.insert(ask.end(), {"--all", "--partition=" + partition});
     const auto nodes = run(ask);
     if (!nodes)
         return Failure(nodes.error());
@@ -144,7 +164,7 @@ tl::expected<ClusterView, std::string> Slurm::view() {
         if (auto parsed = parse_node(row))
             rows.push_back(std::move(*parsed));
     }
-    if (options_.partition.empty() && std::ranges::any_of(rows, &NodeRow::is_of_default))
+    if (partition.empty() && std::ranges::any_of(rows, &NodeRow::is_of_default))
         std::erase_if(rows, [](const NodeRow& row) { return !row.is_of_default; });
     std::set<std::string> known;
     for (NodeRow& row : rows) {

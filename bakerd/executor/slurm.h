@@ -37,6 +37,7 @@ class Slurm final : public Cluster {
     void nudge(std::span<const ClusterTask> tasks) override;
 
   private:
+    [[nodiscard]] std::string partition() const;
     void step_back(const std::string& job) const;
     [[nodiscard]] tl::expected<std::string, std::string> run(const std::vector<std::string>& command) const;
 

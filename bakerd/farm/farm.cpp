@@ -61,6 +61,7 @@ Result<void> Farm::start() {
             recorder_->record(std::move(*finished));
     };
     callbacks.give_up = [this](std::uint64_t id) { return book_.give_up(id); };
+    callbacks.is_recorded = [this](std::uint64_t id) { return !book_.knows(id); };
     auto executor =
         open_executor(options_.executor, options_.store_folder, *owner, *blobs_, std::move(callbacks));
     if (!executor)

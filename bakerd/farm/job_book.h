@@ -80,6 +80,9 @@ class JobBook {
     // Forgets a sector at work that no job wants any more; false where one does.
     [[nodiscard]] bool give_up(std::uint64_t id);
 
+    // Until its end was recorded, or it was given up.
+    [[nodiscard]] bool knows(std::uint64_t id) const;
+
     // Ends the work on a sector, and says for whom it was done. Jobs may go on joining until all have left.
     [[nodiscard]] std::optional<FinishedSector> finish(executor::SectorEnd end);
     // Of those for whom it was recorded, nobody waits for the sector any more. Gives jobs that joined

@@ -51,6 +51,11 @@ std::optional<JobView> JobBook::wait_for_change(std::int64_t id,
     return view_of(found->second);
 }
 
+bool JobBook::knows(std::uint64_t id) const {
+    const std::lock_guard lock(mutex_);
+    return tasks_.contains(id);
+}
+
 bool JobBook::is_running(std::int64_t id, map::SectorCoordinate sector) const {
     const std::lock_guard lock(mutex_);
     const auto job = jobs_.find(id);

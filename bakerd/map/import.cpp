@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <deque>
 #include <future>
-#include <thread>
 
 namespace drtv::map {
 namespace {
@@ -58,8 +57,8 @@ void warn_of_extensions(const GltfDocument& document, Map& map) {
     }
 }
 
-// Documents in the order of their paths; the next ones are loaded meanwhile. Some, because a document takes
-// several times its file's memory.
+// Documents in the order of their paths; the next two are loaded meanwhile. Not more, because a document
+// takes several times its file's memory.
 class Documents {
   public:
     // REQUIRES: both outlive this.
@@ -76,9 +75,10 @@ class Documents {
 
   private:
     void load_ahead() {
-        const std::size_t most = std::clamp(std::thread::hardware_concurrency(), 1u, 4u);
-        for (; ahead_.size() < most && !left_.empty(); left_ = left_.subspan(1))
-            ahead_.push_back(std::async(std::launch::async, load_document, left_.front(), std::cref(files_)));
+        // Where no thread is to be had, when its turn has come.
+        constexpr auto when = std::launch::async | std::launch::deferred;
+        for (; ahead_.size() < 2 && !left_.empty(); left_ = left_.subspan(1))
+            ahead_.push_back(std::async(when, load_document, left_.front(), std::cref(files_)));
     }
 
     std::span<const std::string> left_;

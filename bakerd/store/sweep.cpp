@@ -34,19 +34,24 @@ bool is_older(const fs::path& path, std::optional<fs::file_time_type> now, std::
 }
 
 // Whether it is empty now.
-bool remove_old_below(const fs::path& folder, fs::file_time_type now, std::chrono::hours age) {
+bool remove_old_below(const fs::path& folder,
+                      fs::file_time_type now,
+                      std::chrono::hours age,
+                      const std::stop_token& stop) {
     bool is_empty = true;
     std::error_code code;
     for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+        if (stop.stop_requested())
+            return false;
         std::error_code ignored;
         if (entry->path().filename() == "tmp") {
             is_empty = false;
             continue;
         }
         const bool is_folder = entry->is_directory(ignored) && !entry->is_symlink(ignored);
-        const bool goes = is_folder
-                              ? remove_old_below(entry->path(), now, age) && is_older(entry->path(), now, age)
-                              : is_older(entry->path(), now, age);
+        const bool goes =
+            is_folder ? remove_old_below(entry->path(), now, age, stop) && is_older(entry->path(), now, age)
+                      : is_older(entry->path(), now, age);
         if (!goes || !fs::remove(entry->path(), ignored))
             is_empty = false;
     }
@@ -67,9 +72,9 @@ void remove_leftovers(const std::string& temporary_folder) {
     }
 }
 
-void remove_old_files(const std::string& folder, std::chrono::hours age) {
+void remove_old_files(const std::string& folder, std::chrono::hours age, const std::stop_token& stop) {
     if (const auto now = now_of(folder))
-        remove_old_below(folder, *now, age);
+        remove_old_below(folder, *now, age, stop);
 }
 
 }  // namespace drtv::store

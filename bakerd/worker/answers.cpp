@@ -35,8 +35,12 @@ void for_each_number(std::size_t count, const Work& work) {
             work(n);
     };
     std::vector<std::jthread> threads;
-    while (threads.size() + 1 < std::min(max_threads, count / least))
-        threads.emplace_back(run);
+    try {
+        while (threads.size() + 1 < std::min(max_threads, count / least))
+            threads.emplace_back(run);
+    } catch (const std::system_error&) {
+        // The machine has no more; it goes on with those that there are.
+    }
     run();
 }
 

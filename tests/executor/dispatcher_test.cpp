@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 
 namespace drtv::executor {
@@ -44,6 +45,7 @@ class DispatcherTest : public testing::Test {
             EXPECT_TRUE(ends.emplace(end.id, std::move(end)).second) << end.id << " ended twice";
         };
         callbacks.give_up = [this](std::uint64_t id) { return unwanted.contains(id); };
+        callbacks.is_recorded = [this](std::uint64_t) { return is_recording; };
         dispatcher.emplace(
             Dispatcher::open(std::move(options), cluster, *blobs, std::move(callbacks)).value());
         add(asked_again);
@@ -138,6 +140,7 @@ class DispatcherTest : public testing::Test {
     std::deque<SectorTask> queue;
     std::uint64_t added = 0;
     std::map<std::uint64_t, SectorEnd> ends;
+    bool is_recording = true;
     std::set<std::uint64_t> unwanted;
     double load_s = 0;  // of tasks' answers
     std::optional<Dispatcher> dispatcher;
@@ -630,9 +633,42 @@ TEST_F(DispatcherTest, AnswersOfTasksThatAreDoneLeaveBeforeTheirArrayEnds) {
     answer(cluster.batch(1).front(), result(cluster.batch(1).front()));
     pass(30s);
     EXPECT_EQ(files("answers"), sectors + 1);
+    is_recording = false;
     pass(1min);
+    EXPECT_EQ(files("answers"), sectors + 1) << "the database has not taken them";
+    is_recording = true;
+    pass(5s);
     EXPECT_EQ(files("answers"), 1u) << "a task that runs twice finds it";
     EXPECT_GE(files("arrays"), 1u);
+
+    // The next daemon does not take that task for lost.
+    restart();
+    cluster.set_all(TaskState::running);
+    cluster.set(0, TaskState::done);
+    pass(2min);
+    EXPECT_EQ(dispatcher->state().tasks_lost, 0u);
+}
+
+TEST_F(DispatcherTest, ARefusalIsForgottenWithWhatWasRefused) {
+    cluster.refusal = Refusal{"sbatch: error: AssocMaxSubmitJobLimit", false};
+    add(4);
+    pass(1min);
+    EXPECT_EQ(dispatcher->state().trouble, "sbatch: error: AssocMaxSubmitJobLimit");
+    for (std::uint64_t id = 0; id < added; ++id)
+        unwanted.insert(id);
+    pass(1min);
+    EXPECT_EQ(dispatcher->state().trouble, "");
+}
+
+// By nodes that are shut down, and by sites that watch over memory.
+TEST_F(DispatcherTest, TasksThatAreEndedByTermAgainAndAgainAreTriedAlone) {
+    add(4);
+    for (int n = 0; n < 3; ++n) {
+        pass(20s);
+        cluster.set_all(TaskState::lost, 128 + SIGTERM);
+    }
+    pass(20s);
+    EXPECT_EQ(cluster.arrays.back().tasks, 4u);
 }
 
 TEST_F(DispatcherTest, AnAnswerWhoseFilesWereEvictedIsBakedAgain) {
@@ -675,9 +711,14 @@ TEST_F(DispatcherTest, AnArrayThatCannotBeReadNowIsLeftAlone) {
     add(4);
     pass(2s);
     const std::string file = test::file_of(cluster.arrays.back());
-    fs::rename(file, file + ".away");
+    fs::rename(file, folder.path() + "/away");
     fs::create_directory(file);
-    restart();
+    DispatchOptions options;
+    options.store_folder = folder.path();
+    options.owner = "me";
+    const auto opened = Dispatcher::open(std::move(options), cluster, *blobs, {});
+    ASSERT_FALSE(opened);
+    EXPECT_NE(opened.error().message.find(file), std::string::npos) << opened.error().message;
     EXPECT_TRUE(cluster.cancelled.empty());
     EXPECT_TRUE(fs::exists(file));
 }

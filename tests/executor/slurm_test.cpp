@@ -272,6 +272,16 @@ TEST_F(SlurmTest, TheClusterIsSeenAsItIs) {
     program("sinfo", "echo 'node4|8|4000|idle|all|none'");
     EXPECT_EQ(Slurm(options).view()->nodes.size(), 1u);
     EXPECT_TRUE(called_with("--partition=all")) << calls();
+    // It may be named elsewhere.
+    options.partition = "";
+    options.arguments = {"-p", "night"};
+    ASSERT_TRUE(Slurm(options).view());
+    EXPECT_TRUE(called_with("--partition=night")) << calls();
+    options.arguments = {"--comment=x"};
+    ::setenv("SBATCH_PARTITION", "site", 1);
+    ASSERT_TRUE(Slurm(options).view());
+    ::unsetenv("SBATCH_PARTITION");
+    EXPECT_TRUE(called_with("--partition=site")) << calls();
     program("scontrol", "exit 1");
     EXPECT_FALSE(Slurm(options).view());
 }
