@@ -1,44 +1,18 @@
 // The dispatcher's arrays and what the queue tells of them.
 #include "bakerd/executor/dispatcher.h"
-#include "bakerd/store/durable_file.h"
-#include "bakerd/store/text_bytes.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <csignal>
 
 namespace drtv::executor {
 namespace {
 
 constexpr int max_releases = 3;
 constexpr std::chrono::minutes spent_answers_stay(1);
-constexpr std::chrono::minutes nodes_stay_excluded(10);
 // After the start, for what an earlier run has left at work.
 constexpr std::chrono::minutes all_ask_within(1);
-
-// The sentence with which a task's log ends; it may be longer than what fits into a line of ours.
-std::string last_words(const std::string& log) {
-    const auto bytes = store::read_all(log);
-    return bytes ? store::as_utf8(store::last_line(store::text_of_bytes(*bytes)).substr(0, 300)) : "";
-}
-
-// Neither its sectors' nor its node's.
-bool is_no_fault(const EndedTask& ended, int losses) {
-    if (!ended.last)
-        return true;
-    // Nodes are shut down with TERM; so is, by some sites, what takes too much memory.
-    constexpr int few = 2;
-    if (ended.last->state == TaskState::lost)
-        return ended.last->exit_status != 128 + SIGTERM || losses < few;
-    // Its answer was lost.
-    return ended.last->state == TaskState::done && ended.last->exit_status == 0;
-}
-
-std::string join(const std::string& what, const std::string& words) {
-    return words.empty() ? what : fmt::format("{}: {}", what, words);
-}
 
 }  // namespace
 
@@ -134,14 +108,6 @@ bool Dispatcher::is_to_be_let_go(Array& array, const ClusterTask& task) {
            });
 }
 
-// Another array has its sectors since, or nobody wants them.
-bool Dispatcher::is_missed(const std::string& array, const EndedTask& ended) const {
-    return std::ranges::any_of(ended.unanswered, [&](const Digest& key) {
-        const auto found = sectors_.find(key);
-        return found != sectors_.end() && found->second.place && found->second.place->array == array;
-    });
-}
-
 void Dispatcher::judge(const std::string& key, Array& array) {
     std::vector<ClusterTask> waiting = array.watch.alive();
     std::erase_if(waiting, [&](const ClusterTask& task) { return !is_to_be_let_go(array, task); });
@@ -162,73 +128,6 @@ void Dispatcher::judge(const std::string& key, Array& array) {
                      ended.front().last ? ended.front().last->words : "the cluster does not know them");
     if (const std::vector<ClusterTask> idle = array.watch.take_idle(); !idle.empty())
         cluster_->cancel(idle);
-}
-
-// One of another build says so. One on which the tasks of several batches end without an answer lacks
-// something, and would draw all that wait. It gets no more for a while.
-bool Dispatcher::is_fault_of_node(const EndedTask& ended, const std::string& printed) {
-    constexpr std::size_t too_many = 3;
-    const ClusterTask& last = *ended.last;
-    if (last.state != TaskState::done || last.exit_status == 0)
-        return false;
-    if (ended.unanswered.size() == ended.sectors)
-        barren_[last.node].insert(ended.unanswered.front());
-    const bool is_fault =
-        last.exit_status == options_.differs_status || barren_[last.node].size() >= too_many;
-    if (is_fault)
-        excluded_[last.node] = {
-            now() + nodes_stay_excluded,
-            printed.empty() ? fmt::format("tasks end with status {}", last.exit_status) : printed};
-    return is_fault;
-}
-
-void Dispatcher::try_again(const std::string& array_key, const Array& array, const EndedTask& ended) {
-    const auto state = ended.last ? ended.last->state : TaskState::lost;
-    const bool was_refused = !ended.last && !array.was_taken && !array.watch.is_known();
-    bool is_of_node = false;
-    std::string words = "the cluster lost its tasks";
-    std::string log;
-    if (ended.last) {
-        log = fmt::format("logs/{}/{}.log", ended.last->key, ended.last->number);
-        const std::string printed = last_words(options_.store_folder + "/" + log);
-        const std::string& node = ended.last->node;
-        words = join(fmt::format("its task ended{} as {} (exit status {}; {})",
-                                 node.empty() ? "" : " on node " + node,
-                                 ended.last->words,
-                                 ended.last->exit_status,
-                                 log),
-                     printed);
-        is_of_node = is_fault_of_node(ended, printed);
-    }
-    for (const Digest& key : ended.unanswered) {
-        const auto found = sectors_.find(key);
-        if (found == sectors_.end())
-            continue;
-        Sector& sector = found->second;
-        // Another array has it since.
-        if (!sector.place || sector.place->array != array_key)
-            continue;
-        sector.place.reset();
-        if (state == TaskState::out_of_memory)
-            costs_.learn_too_little(sector.request, std::max(array.memory_bytes, std::int64_t{1} << 30));
-        const bool is_lost = is_of_node || is_no_fault(ended, sector.losses);
-        if (is_lost)
-            sector.losses += was_refused ? 0 : 1;
-        else
-            ++sector.failures;
-        sector.alone = sector.alone || (ended.sectors > 1 && !is_lost && state != TaskState::cancelled);
-        // Without the earlier result: it may be what the worker cannot bear.
-        if (sector.failures > 0)
-            sector.request.earlier.reset();
-        if (sector.failures >= max_attempts || sector.losses >= max_losses)
-            finish(key,
-                   tl::unexpected(worker::RequestFailure{
-                       fmt::format("{} (tried {} times)", words, sector.failures + sector.losses), false}),
-                   ended.last ? ended.last->node : "",
-                   log);
-        else
-            fresh_.push_back(key);
-    }
 }
 
 void Dispatcher::close_arrays() {

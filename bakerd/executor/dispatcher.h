@@ -148,14 +148,22 @@ class Dispatcher {
     void settle_left_behind();
     void ask_queue();
     [[nodiscard]] bool is_to_be_let_go(Array& array, const ClusterTask& task);
-    [[nodiscard]] bool is_fault_of_node(const EndedTask& ended, const std::string& printed);
-    [[nodiscard]] bool is_missed(const std::string& array, const EndedTask& ended) const;
     void judge(const std::string& key, Array& array);
-    void try_again(const std::string& array_key, const Array& array, const EndedTask& ended);
     void close_arrays();
     [[nodiscard]] bool is_at_work(const Place& place) const;
     void remove_spent_answers();
+
+    // dispatch_ends.cpp: tasks that ended with sectors to bake.
+    [[nodiscard]] bool is_fault_of_node(const EndedTask& ended, const std::string& printed);
+    [[nodiscard]] bool is_missed(const std::string& array, const EndedTask& ended) const;
+    void try_again(const std::string& array_key, const Array& array, const EndedTask& ended);
+
+    // dispatch_view.cpp: the cluster.
     void view_cluster();
+    [[nodiscard]] bool may_bake(const ClusterNode& node) const;
+    [[nodiscard]] std::size_t slots() const;
+
+    // dispatch_submit.cpp: arrays of what is ready.
     void submit(Priority priority);
     struct Cut {
         std::vector<std::vector<Digest>> batches;
@@ -163,8 +171,6 @@ class Dispatcher {
     };
     [[nodiscard]] Cut cut(Priority priority);
     void refuse_all(Priority priority);
-    [[nodiscard]] bool may_bake(const ClusterNode& node) const;
-    [[nodiscard]] std::size_t slots() const;
     [[nodiscard]] std::size_t tasks_of_array() const;
     [[nodiscard]] double batch_s(Priority priority) const;
     [[nodiscard]] std::int64_t memory_for(std::span<const std::vector<Digest>> batches) const;
