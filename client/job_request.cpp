@@ -1,5 +1,7 @@
 #include "client/job_request.h"
 
+#include "client/user_name.h"
+
 #include "client/folder_manifest.h"
 #include "client/map_contents.h"
 #include "client/map_text.h"
@@ -88,6 +90,8 @@ cli::Result<v1::Job> wanted_job(const SubmitOptions& options) {
     v1::Job job;
     job.mutable_settings()->set_preset(options.preset);
     job.set_priority(options.priority == "nightly" ? v1::Job::NIGHTLY : v1::Job::INTERACTIVE);
+    job.set_owner(user_name());
+    job.set_label(options.label);
     std::set<std::string> keys;
     for (const std::string& setting : options.settings) {
         const auto key = set_setting(job, setting);

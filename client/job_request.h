@@ -17,6 +17,7 @@ struct SubmitOptions {
     std::vector<std::string> settings;    // "key=value"
     bool exact = false;                   // tolerance=0
     std::string priority{"interactive"};  // or "nightly"
+    std::string label;
     bool wait = false;
     bool yes = false;         // a large job needs no question
     std::string pull_folder;  // empty: pull nothing

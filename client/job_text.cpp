@@ -49,6 +49,8 @@ std::string state_name(Job::State state) {
     switch (state) {
         case Job::WAITING:
             return "waiting";
+        case Job::HELD:
+            return "held";
         case Job::RUNNING:
             return "running";
         case Job::SUCCEEDED:
@@ -94,6 +96,10 @@ std::string json_line(const Job& job, const JobReport* report) {
     json["created"] = job.create_time().seconds();
     json["ended"] = job.end_time().seconds();
     json["seconds"] = seconds_of(job);
+    json["owner"] = job.owner();
+    json["label"] = job.label();
+    json["jobs_ahead"] = job.jobs_ahead();
+    json["seconds_to_start"] = job.seconds_to_start();
     json["priority"] = job.priority() == Job::NIGHTLY ? "nightly" : "interactive";
     if (job.has_cluster()) {
         const auto& cluster = job.cluster();
@@ -141,13 +147,24 @@ std::string cluster_text(const v1::ClusterState& cluster) {
     return text;
 }
 
+std::string wait_text(const Job& job) {
+    if (job.state() != Job::WAITING || job.jobs_ahead() == 0)
+        return "";
+    std::string text = fmt::format(", {} ahead", counted(job.jobs_ahead(), "job", "jobs"));
+    if (job.seconds_to_start() > 0)
+        text += fmt::format(", begins in about {}", duration_text(job.seconds_to_start()));
+    return text;
+}
+
 std::string one_line(const Job& job) {
-    std::string text = fmt::format("job {}{} {}: {} of {} sectors done",
+    std::string text = fmt::format("job {}{}{} {}: {} of {} sectors done",
                                    job_number(job),
+                                   job.label().empty() ? "" : " \"" + job.label() + "\"",
                                    job.priority() == Job::NIGHTLY ? " (nightly)" : "",
                                    state_name(job.state()),
                                    with_thousands(job.sectors_done()),
                                    with_thousands(job.sectors_total()));
+    text += wait_text(job);
     text += reused_text(job);
     if (job.sectors_failed() > 0)
         text += fmt::format(", {} failed", with_thousands(job.sectors_failed()));

@@ -36,6 +36,7 @@ struct Arguments {
     std::string sector;  // "I,J"
     std::string folder;
     bool clear = false;
+    bool mine = false;
     bool warnings_as_errors = false;
     // The subcommand. Set when the line has been parsed.
     std::function<cli::Result<cli::ExitCode>(ServerConnection&)> run;
@@ -110,6 +111,7 @@ void add_map_commands(CLI::App& app, Arguments& to) {
                      "interactive: somebody waits; nightly: after all that are interactive")
         ->check(cli::one_of({"interactive", "nightly"}))
         ->capture_default_str();
+    submit->add_option("--label", to.submit.label, "What you call the job; shown where jobs are listed");
     submit->add_flag("--yes", to.submit.yes, "Bake more than 2,500 sectors without a question");
     submit->add_flag("--wait", to.submit.wait, "Show progress until the job ends");
     submit->add_option("--pull", to.submit.pull_folder, "Wait, then write the sector files to this folder");
@@ -143,19 +145,23 @@ void add_job_commands(CLI::App& app, Arguments& to) {
     CLI::App* watch = app.add_subcommand("watch", "Show a job's progress until it ends");
     CLI::App* wait = app.add_subcommand("wait", "Wait for a job's end, and say no more than that");
     CLI::App* cancel = app.add_subcommand("cancel", "Stop a job; what is done stays");
+    CLI::App* raise = app.add_subcommand("raise", "Bake a job before all others of its owner");
+    CLI::App* hold = app.add_subcommand("hold", "Begin no more sectors of a job");
+    CLI::App* release = app.add_subcommand("release", "Go on with a job that is held");
     CLI::App* report = app.add_subcommand(
         "report", "A job in numbers: time by stage, probes dropped, error reached, warnings by object");
     CLI::App* retry = app.add_subcommand("retry", "Bake the sectors again that have failed");
     CLI::App* pull = app.add_subcommand("pull", "Write a job's finished sector files to a folder");
     CLI::App* logs = app.add_subcommand("logs", "What a cluster's task printed while it baked a sector");
-    for (CLI::App* command : {status, watch, wait, report, cancel, retry, pull, logs})
+    for (CLI::App* command : {status, watch, wait, report, cancel, raise, hold, release, retry, pull, logs})
         command->add_option("JOB", to.job, "Number of the job")->required()->check(job_number_check());
     for (CLI::App* command : {watch, wait})
         add_timeout(*command, to.submit);
     pull->add_option("--out", to.folder, "Folder for the files; made when missing")->required();
     pull->add_flag("--replace", to.submit.replace, "Take a folder that holds sectors of another map");
     logs->add_option("SECTOR", to.sector, "The sector, as I,J")->required();
-    when_called(*list, to, run_list);
+    list->add_flag("--mine", to.mine, "Only yours: of your certificate, or of your user name");
+    when_called(*list, to, [&to](ServerConnection& connection) { return run_list(connection, to.mine); });
     when_called(*status, to, [&to](ServerConnection& connection) { return run_status(connection, to.job); });
     when_called(
         *watch, to, [&to](ServerConnection& connection) { return run_watch(connection, to.job, {}); });
@@ -165,6 +171,10 @@ void add_job_commands(CLI::App& app, Arguments& to) {
     when_called(*report, to, [&to](ServerConnection& connection) { return run_report(connection, to.job); });
     when_called(
         *logs, to, [&to](ServerConnection& connection) { return run_logs(connection, to.job, to.sector); });
+    when_called(*raise, to, [&to](ServerConnection& connection) { return run_raise(connection, to.job); });
+    when_called(*hold, to, [&to](ServerConnection& connection) { return run_hold(connection, to.job); });
+    when_called(
+        *release, to, [&to](ServerConnection& connection) { return run_release(connection, to.job); });
     when_called(*retry, to, [&to](ServerConnection& connection) { return run_retry(connection, to.job); });
     when_called(*cancel, to, [&to](ServerConnection& connection) { return run_cancel(connection, to.job); });
     when_called(*pull, to, [&to](ServerConnection& connection) {

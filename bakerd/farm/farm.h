@@ -73,7 +73,14 @@ class Farm {
     [[nodiscard]] store::Result<PlanView> plan_job(const JobRequest& request);
     [[nodiscard]] store::Result<JobView> get_job(std::int64_t id);
     // Newest first, ids below `before`.
-    [[nodiscard]] store::Result<std::vector<JobView>> list_jobs(std::int64_t before, std::size_t count);
+    // Of one owner, where it is named.
+    [[nodiscard]] store::Result<std::vector<JobView>> list_jobs(std::int64_t before,
+                                                                std::size_t count,
+                                                                const std::optional<std::string>& owner = {});
+    // Before all others of its owner.
+    [[nodiscard]] store::Result<JobView> raise_job(std::int64_t id);
+    // Begins no more of its sectors, or does again.
+    [[nodiscard]] store::Result<JobView> hold_job(std::int64_t id, bool held);
     // With `forget_request` the job is no longer the answer to its request id.
     [[nodiscard]] store::Result<JobView> cancel_job(std::int64_t id, bool forget_request = false);
     // Bakes again what has failed.
@@ -101,6 +108,8 @@ class Farm {
     void stop(std::chrono::milliseconds patience);
 
   private:
+    [[nodiscard]] store::Result<JobView> move(std::int64_t id,
+                                              const std::function<void(JobRow& job)>& change);
     Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<store::BlobStore> blobs);
     [[nodiscard]] store::Result<void> load();
     [[nodiscard]] store::Result<void> start();

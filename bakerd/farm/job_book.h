@@ -3,14 +3,13 @@
 #pragma once
 
 #include "bakerd/executor/executor.h"
+#include "bakerd/farm/job_queue.h"
 #include "bakerd/farm/records.h"
 
-#include <array>
 #include <chrono>
 #include <compare>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -28,6 +27,8 @@ struct JobView {
     double rays_per_second = 0;
     double seconds_left = 0;            // 0: not known
     bool waiting = false;               // none of its sectors has been taken up yet
+    std::int64_t jobs_ahead = 0;        // where it waits: whose turn comes before
+    double seconds_to_start = 0;        // likewise, about; 0: not known
     std::uint64_t version = 0;          // grows with each change
     std::vector<std::string> warnings;  // of records that could not be used; of the database; the first few
     std::optional<executor::ClusterState> cluster;  // of a running job, where there is one
@@ -91,14 +92,19 @@ class JobBook {
     // The sector waits again.
     void put_back(std::uint64_t id);
 
+    // It has another place in the queue, as was written.
+    void move(const JobRow& row);
+
     // What was written of a job. `result` is a sector that was baked for it.
     void update(const JobRow& row, const worker::SectorResult* result = nullptr);
     // Shown with the job from now on.
     void warn(std::int64_t job, const std::string& sentence);
 
     [[nodiscard]] std::optional<JobView> view(std::int64_t id) const;
-    // Newest first, ids below `before`.
-    [[nodiscard]] std::vector<JobView> list(std::int64_t before, std::size_t count) const;
+    // Newest first, ids below `before`; of one owner, where it is named.
+    [[nodiscard]] std::vector<JobView> list(std::int64_t before,
+                                            std::size_t count,
+                                            const std::optional<std::string>& owner = {}) const;
     // Waits until the job's version is above `seen` or the time is over.
     [[nodiscard]] std::optional<JobView> wait_for_change(std::int64_t id,
                                                          std::uint64_t seen,
@@ -112,6 +118,7 @@ class JobBook {
         std::map<map::SectorCoordinate, std::uint64_t> tasks;  // of sectors that are not there yet
         std::int64_t rays = 0;                                 // since the server started
         std::int64_t baked = 0;                                // likewise
+        double baked_s = 0;                                    // likewise, of one thread
         std::optional<Clock::time_point> started;
         std::uint64_t version = 1;
         std::vector<std::string> warnings;
@@ -122,29 +129,33 @@ class JobBook {
         worker::BakeRequest request;
         double earlier_seconds = 0;  // that the earlier result took from nothing; 0: there is none
         double seconds = 0;          // that baking it will take, as far as is known; 0: not
-        executor::Priority priority = executor::Priority::nightly;  // the highest of its jobs'
         std::set<std::int64_t> jobs;
         bool running = false;
+        std::int64_t charged_job = 0;  // whose turn it was
+        double charged_s = 0;          // that its owner was charged with
     };
 
+    [[nodiscard]] static QueuePlace place_of(const JobRow& job) {
+        return {job.owner, job.priority, job.raised, job.held};
+    }
     // One that is at work may be about to end with what the job has just heard.
     enum class Join : std::uint8_t { any, waiting };
     void want(Job& job, std::span<const WantedSector> wanted, Join join);
     // `key` is the sector's, but for its tolerance.
     [[nodiscard]] std::uint64_t task_for(const Job& job, const WantedSector& wanted, BakeKey key, Join join);
-    void put_in_queue(std::uint64_t id, const Task& task);
+    [[nodiscard]] JobQueue::Wanted begin(std::uint64_t id);
     void drop_tasks(Job& job);
     void forget(std::uint64_t id);
     void changed(Job& job);
-    [[nodiscard]] static JobView view_of(const Job& job);
+    [[nodiscard]] JobView view_of(const Job& job) const;
+    void add_wait(JobView& view) const;
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::map<std::int64_t, Job> jobs_;               // guarded by mutex_
-    std::unordered_map<std::uint64_t, Task> tasks_;  // guarded by mutex_
-    std::map<BakeKey, std::uint64_t> tasks_by_key_;  // guarded by mutex_
-    std::array<std::deque<std::uint64_t>, 2>
-        queues_;  // guarded by mutex_; by priority, in the order of baking
+    std::map<std::int64_t, Job> jobs_;                // guarded by mutex_
+    std::unordered_map<std::uint64_t, Task> tasks_;   // guarded by mutex_
+    std::map<BakeKey, std::uint64_t> tasks_by_key_;   // guarded by mutex_
+    JobQueue queue_;                                  // guarded by mutex_
     std::map<std::string, std::int64_t> by_request_;  // guarded by mutex_
     std::set<std::string> open_requests_;             // guarded by mutex_
     std::uint64_t next_task_ = 1;                     // guarded by mutex_

@@ -5,7 +5,7 @@
 
 namespace drtv::farm {
 
-JobView JobBook::view_of(const Job& job) {
+JobView JobBook::view_of(const Job& job) const {
     JobView view;
     view.row = job.row;
     view.rays = job.rays;
@@ -21,7 +21,26 @@ JobView JobBook::view_of(const Job& job) {
         const std::int64_t left = job.row.sectors_total - job.row.sectors_done - job.row.sectors_failed;
         view.seconds_left = seconds / static_cast<double>(job.baked) * static_cast<double>(left);
     }
+    if (view.waiting && !job.row.held)
+        add_wait(view);
     return view;
+}
+
+// What is at work now has its share already; for what waits the estimate is of the whole machine.
+void JobBook::add_wait(JobView& view) const {
+    const JobQueue::Line line = queue_.line_before(view.row.id);
+    view.jobs_ahead = static_cast<std::int64_t>(line.before.size());
+    for (const std::int64_t id : line.before) {
+        const Job& ahead = jobs_.at(id);
+        const bool is_begun = ahead.started && ahead.baked > 0;
+        const double seconds =
+            is_begun ? view_of(ahead).seconds_left : ahead.expected_s * static_cast<double>(line.owners);
+        if (seconds == 0) {
+            view.seconds_to_start = 0;
+            return;
+        }
+        view.seconds_to_start += seconds;
+    }
 }
 
 std::optional<JobView> JobBook::view(std::int64_t id) const {
@@ -30,12 +49,16 @@ std::optional<JobView> JobBook::view(std::int64_t id) const {
     return found == jobs_.end() ? std::nullopt : std::optional(view_of(found->second));
 }
 
-std::vector<JobView> JobBook::list(std::int64_t before, std::size_t count) const {
+std::vector<JobView> JobBook::list(std::int64_t before,
+                                   std::size_t count,
+                                   const std::optional<std::string>& owner) const {
     const std::lock_guard lock(mutex_);
     std::vector<JobView> views;
     auto entry = std::make_reverse_iterator(jobs_.lower_bound(before));
-    for (; entry != jobs_.rend() && views.size() < count; ++entry)
-        views.push_back(view_of(entry->second));
+    for (; entry != jobs_.rend() && views.size() < count; ++entry) {
+        if (!owner || entry->second.row.owner == *owner)
+            views.push_back(view_of(entry->second));
+    }
     return views;
 }
 

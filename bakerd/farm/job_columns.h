@@ -60,6 +60,10 @@ void columns(auto& codec, Is<JobRow> auto& job) {
     codec("created_ms", job.created_ms);
     codec("ended_ms", job.ended_ms);
     codec("priority", job.priority);
+    codec("owner", job.owner);
+    codec("label", job.label);
+    codec("raised", job.raised);
+    codec("held", job.held);
 }
 
 void columns(auto& codec, Is<JobSectorRow> auto& sector) {

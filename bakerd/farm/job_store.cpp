@@ -117,6 +117,8 @@ JobRow new_job(const JobRequest& request, const Digest& inventory) {
     job.settings = request.settings;
     job.region = request.region;
     job.priority = request.priority;
+    job.owner = request.owner;
+    job.label = request.label;
     job.created_ms = unix_milliseconds();
     return job;
 }
@@ -199,6 +201,29 @@ store::Result<void> retry_job(Database& database, std::int64_t id, JobBook& book
     }
     spdlog::info("job {} is retried: {} sectors", id, wanted.size());
     book.reopen(*reopened, wanted);
+    return {};
+}
+
+store::Result<void> move_job(Database& database,
+                             std::int64_t id,
+                             JobBook& book,
+                             const std::function<void(JobRow& job)>& change) {
+    if (!book.view(id))
+        return store::fail(store::ErrorCode::not_found, fmt::format("there is no job {}", id));
+    std::optional<JobRow> moved;
+    const auto done = database.write([&](Connection& connection) {
+        auto job = find_job(connection, id);
+        if (!job || !job->sound || job->row.state != JobState::running)
+            return;
+        change(job->row);
+        update_job(connection, job->row);
+        moved = std::move(job->row);
+    });
+    if (!done)
+        return done;
+    if (!moved)
+        return store::fail(store::ErrorCode::failed_precondition, fmt::format("job {} has ended", id));
+    book.move(*moved);
     return {};
 }
 

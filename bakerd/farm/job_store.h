@@ -24,6 +24,12 @@ namespace drtv::farm {
 
 // Makes the failed sectors of a job that has ended wait again, and tells the book. Fails where there is no
 // such job or sector.
+// Changes a running job's place in the queue. Errors: not_found; failed_precondition for one that has ended.
+[[nodiscard]] store::Result<void> move_job(Database& database,
+                                           std::int64_t id,
+                                           JobBook& book,
+                                           const std::function<void(JobRow& job)>& change);
+
 [[nodiscard]] store::Result<void> retry_job(Database& database, std::int64_t id, JobBook& book);
 
 // Tells the book of all jobs that the database has, and resumes those that were running. Rows that are not as

@@ -56,6 +56,10 @@ struct JobRow {
     std::int64_t created_ms = 0;      // Unix time
     std::int64_t ended_ms = 0;        // 0: it has not
     executor::Priority priority = executor::Priority::interactive;
+    std::string owner;        // who submitted it, as far as is known
+    std::string label;        // what its owner calls it
+    std::int64_t raised = 0;  // before the owner's jobs that are less so
+    bool held = false;        // none of its sectors is begun
 };
 
 // A sector of a job.

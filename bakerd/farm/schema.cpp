@@ -15,6 +15,7 @@ std::vector<const char*> all_steps() {
     std::vector<const char*> steps;
     std::ranges::copy(schema_steps_0_to_4(), std::back_inserter(steps));
     std::ranges::copy(schema_steps_5_to_8(), std::back_inserter(steps));
+    std::ranges::copy(schema_steps_from_9(), std::back_inserter(steps));
     return steps;
 }
 

@@ -9,5 +9,6 @@ namespace drtv::farm {
 // Step n takes a file of schema n to n + 1.
 [[nodiscard]] std::array<const char*, 5> schema_steps_0_to_4();
 [[nodiscard]] std::array<const char*, 4> schema_steps_5_to_8();
+[[nodiscard]] std::array<const char*, 1> schema_steps_from_9();
 
 }  // namespace drtv::farm

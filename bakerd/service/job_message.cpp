@@ -36,6 +36,12 @@ void fill_cluster(const executor::ClusterState& state, v1::ClusterState& out) {
     out.set_trouble(state.trouble);
 }
 
+v1::Job::State state_of(const farm::JobView& view) {
+    if (view.row.state == farm::JobState::running && view.row.held)
+        return v1::Job::HELD;
+    return view.waiting ? v1::Job::WAITING : to_proto(view.row.state);
+}
+
 }  // namespace
 
 void fill_job(const farm::JobView& view, v1::Job& out) {
@@ -50,7 +56,7 @@ void fill_job(const farm::JobView& view, v1::Job& out) {
         out.mutable_region()->set_x1(region->x1);
         out.mutable_region()->set_y1(region->y1);
     }
-    out.set_state(view.waiting ? v1::Job::WAITING : to_proto(row.state));
+    out.set_state(state_of(view));
     out.set_error(row.error);
     out.set_sectors_total(row.sectors_total);
     out.set_sectors_done(row.sectors_done);
@@ -68,6 +74,10 @@ void fill_job(const farm::JobView& view, v1::Job& out) {
     for (const std::string& warning : view.warnings)
         out.add_warnings(warning);
     out.set_priority(row.priority == executor::Priority::nightly ? v1::Job::NIGHTLY : v1::Job::INTERACTIVE);
+    out.set_owner(row.owner);
+    out.set_label(row.label);
+    out.set_jobs_ahead(view.jobs_ahead);
+    out.set_seconds_to_start(view.seconds_to_start);
     if (view.cluster)
         fill_cluster(*view.cluster, *out.mutable_cluster());
 }

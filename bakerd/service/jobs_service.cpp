@@ -5,9 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <thread>
+#include <utility>
 
 namespace drtv::service {
 namespace {
@@ -57,6 +59,33 @@ grpc::Status answer(const store::Result<farm::JobView>& view, v1::Job* response)
     return grpc::Status::OK;
 }
 
+template <class Do>
+grpc::Status with_job(const std::string& name, v1::Job* response, const Do& act) {
+    const auto id = job_from_name(name);
+    return id ? answer(act(*id), response) : to_status(id.error());
+}
+
+// Both are shown to people.
+store::Result<void> check_text(const std::string& what, const std::string& text) {
+    constexpr std::size_t max_bytes = 128;
+    const bool has_control = std::ranges::any_of(
+        text, [](char letter) { return static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f; });
+    if (text.size() <= max_bytes && !has_control)
+        return {};
+    return store::fail(
+        store::ErrorCode::invalid_argument,
+        fmt::format("the {} is longer than {} bytes, or has control characters", what, max_bytes));
+}
+
+// Whose jobs this client's are.
+std::string owner_of(const grpc::ServerContext& context, const std::string& said) {
+    const auto identity = context.auth_context();
+    if (!identity->IsPeerAuthenticated())
+        return said;
+    const auto uris = identity->FindPropertyValues(GRPC_PEER_URI_PROPERTY_NAME);
+    return uris.empty() ? said : std::string(uris.front().data(), uris.front().size());
+}
+
 }  // namespace
 
 grpc::Status JobsService::CreateJob(grpc::ServerContext* context,
@@ -65,7 +94,14 @@ grpc::Status JobsService::CreateJob(grpc::ServerContext* context,
     auto wanted = wanted_job(request->job());
     if (!wanted)
         return to_status(wanted.error());
+    for (const auto& [what, text] :
+         {std::pair("owner", &request->job().owner()), {"label", &request->job().label()}}) {
+        if (auto checked = check_text(what, *text); !checked)
+            return to_status(checked.error());
+    }
     wanted->request_id = request->request_id();
+    wanted->owner = owner_of(*context, request->job().owner());
+    wanted->label = request->job().label();
     return answer(farm_.create_job(*wanted, [context] { return context->IsCancelled(); }), response);
 }
 
@@ -111,7 +147,7 @@ grpc::Status JobsService::GetJob(grpc::ServerContext*, const v1::GetJobRequest* 
     return answer(farm_.get_job(*id), response);
 }
 
-grpc::Status JobsService::ListJobs(grpc::ServerContext*,
+grpc::Status JobsService::ListJobs(grpc::ServerContext* context,
                                    const v1::ListJobsRequest* request,
                                    v1::ListJobsResponse* response) {
     const auto page = page_of(request->page_token(),
@@ -122,7 +158,10 @@ grpc::Status JobsService::ListJobs(grpc::ServerContext*,
     if (!page)
         return to_status(page.error());
     const auto size = static_cast<std::size_t>(page->size);
-    const auto views = farm_.list_jobs(page->from, size + 1);
+    std::optional<std::string> owner;
+    if (!request->owner().empty())
+        owner = owner_of(*context, request->owner());
+    const auto views = farm_.list_jobs(page->from, size + 1, owner);
     if (!views)
         return to_status(views.error());
     for (std::size_t n = 0; n < views->size() && n < size; ++n)
@@ -135,19 +174,31 @@ grpc::Status JobsService::ListJobs(grpc::ServerContext*,
 grpc::Status JobsService::CancelJob(grpc::ServerContext*,
                                     const v1::CancelJobRequest* request,
                                     v1::Job* response) {
-    const auto id = job_from_name(request->name());
-    if (!id)
-        return to_status(id.error());
-    return answer(farm_.cancel_job(*id), response);
+    return with_job(request->name(), response, [this](std::int64_t id) { return farm_.cancel_job(id); });
+}
+
+grpc::Status JobsService::RaiseJob(grpc::ServerContext*,
+                                   const v1::RaiseJobRequest* request,
+                                   v1::Job* response) {
+    return with_job(request->name(), response, [this](std::int64_t id) { return farm_.raise_job(id); });
+}
+
+grpc::Status JobsService::HoldJob(grpc::ServerContext*,
+                                  const v1::HoldJobRequest* request,
+                                  v1::Job* response) {
+    return with_job(request->name(), response, [this](std::int64_t id) { return farm_.hold_job(id, true); });
+}
+
+grpc::Status JobsService::ReleaseJob(grpc::ServerContext*,
+                                     const v1::ReleaseJobRequest* request,
+                                     v1::Job* response) {
+    return with_job(request->name(), response, [this](std::int64_t id) { return farm_.hold_job(id, false); });
 }
 
 grpc::Status JobsService::RetryJob(grpc::ServerContext*,
                                    const v1::RetryJobRequest* request,
                                    v1::Job* response) {
-    const auto id = job_from_name(request->name());
-    if (!id)
-        return to_status(id.error());
-    return answer(farm_.retry_job(*id), response);
+    return with_job(request->name(), response, [this](std::int64_t id) { return farm_.retry_job(id); });
 }
 
 grpc::Status JobsService::WatchJob(grpc::ServerContext* context,

@@ -66,6 +66,15 @@ class JobsService final : public v1::Jobs::Service {
     grpc::Status RetryJob(grpc::ServerContext* context,
                           const v1::RetryJobRequest* request,
                           v1::Job* response) override;
+    grpc::Status RaiseJob(grpc::ServerContext* context,
+                          const v1::RaiseJobRequest* request,
+                          v1::Job* response) override;
+    grpc::Status HoldJob(grpc::ServerContext* context,
+                         const v1::HoldJobRequest* request,
+                         v1::Job* response) override;
+    grpc::Status ReleaseJob(grpc::ServerContext* context,
+                            const v1::ReleaseJobRequest* request,
+                            v1::Job* response) override;
     grpc::Status WatchJob(grpc::ServerContext* context,
                           const v1::WatchJobRequest* request,
                           grpc::ServerWriter<v1::Job>* writer) override;

@@ -96,6 +96,50 @@ TEST(JobBook, ANightlySectorThatSomebodyWaitsForIsBakedOnceAndEarly) {
     EXPECT_FALSE(book.next(executor::Priority::nightly));
 }
 
+TEST(JobBook, AGiantJobHoldsUpNobodyButItsOwner) {
+    JobBook book;
+    std::vector<WantedSector> giant;
+    for (int i = 0; i < 10'000; ++i)
+        giant.push_back({{i, 0}, std::nullopt});
+    JobRow mistake = running_job(1);
+    mistake.owner = "ann";
+    mistake.sectors_total = 10'000;
+    book.add(mistake, giant, {}, 5000);
+    for (int n = 0; n < 4; ++n)
+        ASSERT_TRUE(book.next(executor::Priority::interactive));
+    JobRow small = running_job(2);
+    small.owner = "bob";
+    const WantedSector river{{5, 4}, std::nullopt};
+    book.add(small, {&river, 1});
+    EXPECT_EQ(book.view(2)->jobs_ahead, 0);
+    JobRow later = running_job(3);
+    later.owner = "ann";
+    const WantedSector hill{{5, 5}, std::nullopt};
+    book.add(later, {&hill, 1}, {}, 3);
+    EXPECT_EQ(book.view(3)->jobs_ahead, 1);
+    EXPECT_EQ(book.view(3)->seconds_to_start, 2 * 5000) << "two owners share the machine";
+    std::set<std::int32_t> rows;
+    for (int n = 0; n < 2; ++n)
+        rows.insert(book.next(executor::Priority::interactive)->request.sector.j);
+    EXPECT_TRUE(rows.contains(4)) << "bob's";
+
+    // Ann mends it herself.
+    mistake.held = true;
+    book.move(mistake);
+    EXPECT_EQ(book.view(3)->jobs_ahead, 0);
+    EXPECT_EQ(book.next(executor::Priority::interactive)->request.sector, hill.sector);
+    EXPECT_FALSE(book.next(executor::Priority::interactive));
+    // A recorder that read the row before tells after.
+    mistake.held = false;
+    book.update(mistake);
+    EXPECT_TRUE(book.view(1)->row.held);
+    EXPECT_FALSE(book.next(executor::Priority::interactive));
+    book.move(mistake);
+    EXPECT_TRUE(book.next(executor::Priority::interactive));
+    EXPECT_EQ(book.list(100, 10, "ann").size(), 2u);
+    EXPECT_EQ(book.list(100, 10).size(), 3u);
+}
+
 TEST(JobBook, ASectorAtWorkIsGivenUpWhenNobodyWantsIt) {
     JobBook book;
     book.add(running_job(1), {&meadow, 1});

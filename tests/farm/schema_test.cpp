@@ -160,7 +160,7 @@ TEST_P(KeptSchemas, KeepResultsForTheirMapAndThoseThatReusedThem) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Versions, KeptSchemas, testing::Values(4, 5, 6, 7, 8));
+INSTANTIATE_TEST_SUITE_P(Versions, KeptSchemas, testing::Values(4, 5, 6, 7, 8, 9));
 
 // A step that sums rows anew must not make a damaged one sound.
 TEST_F(SchemaTest, ARowThatWasDamagedStaysSo) {

@@ -1,0 +1,117 @@
+#include "bakerd/farm/job_queue.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace drtv::farm {
+
+JobQueue::Rank JobQueue::rank_of(std::int64_t job, const QueuePlace& place) {
+    return {-place.raised, job};
+}
+
+std::deque<std::uint64_t>& JobQueue::tasks_of(std::int64_t job, Job& known) {
+    return known.place.is_held
+               ? known.held
+               : owners_of(known.place.priority)[known.place.owner].jobs[rank_of(job, known.place)];
+}
+
+void JobQueue::put(std::int64_t job, QueuePlace place) {
+    const auto [entry, is_new] = jobs_.try_emplace(job);
+    Job& known = entry->second;
+    std::deque<std::uint64_t> tasks;
+    if (!is_new) {
+        tasks = std::move(tasks_of(job, known));
+        if (!known.place.is_held)
+            owners_of(known.place.priority)[known.place.owner].jobs.erase(rank_of(job, known.place));
+    }
+    known = {std::move(place), {}};
+    tasks_of(job, known) = std::move(tasks);
+}
+
+void JobQueue::remove(std::int64_t job) {
+    const auto found = jobs_.find(job);
+    if (found == jobs_.end())
+        return;
+    const QueuePlace& place = found->second.place;
+    if (!place.is_held)
+        owners_of(place.priority)[place.owner].jobs.erase(rank_of(job, place));
+    jobs_.erase(found);
+}
+
+void JobQueue::push(std::int64_t job, std::uint64_t task) {
+    tasks_of(job, jobs_.at(job)).push_back(task);
+}
+
+bool JobQueue::has_tasks(const Owner& owner) {
+    return std::ranges::any_of(owner.jobs, [](const auto& job) { return !job.second.empty(); });
+}
+
+// Who had nothing to do has no claim to what the others had meanwhile (start-time fair queueing: Goyal, Vin
+// and Cheng 1996).
+void JobQueue::begin_turn(Owners& owners) {
+    double least_s = std::numeric_limits<double>::infinity();
+    for (const auto& [name, owner] : owners) {
+        if (owner.is_waiting)
+            least_s = std::min(least_s, owner.had_s);
+    }
+    for (auto& [name, owner] : owners) {
+        const bool waits = has_tasks(owner);
+        if (waits && !owner.is_waiting && least_s < std::numeric_limits<double>::infinity())
+            owner.had_s = std::max(owner.had_s, least_s);
+        owner.is_waiting = waits;
+    }
+}
+
+std::optional<std::uint64_t> JobQueue::next(executor::Priority priority, const Wants& wants) {
+    Owners& owners = owners_of(priority);
+    for (;;) {
+        begin_turn(owners);
+        Owner* first = nullptr;
+        for (auto& [name, owner] : owners) {
+            if (owner.is_waiting && (first == nullptr || owner.had_s < first->had_s))
+                first = &owner;
+        }
+        if (first == nullptr)
+            return std::nullopt;
+        const auto job =
+            std::ranges::find_if(first->jobs, [](const auto& entry) { return !entry.second.empty(); });
+        const std::uint64_t task = job->second.front();
+        job->second.pop_front();
+        const Wanted wanted = wants(job->first.second, task);
+        if (!wanted.is_wanted)
+            continue;
+        first->had_s += wanted.seconds;
+        return task;
+    }
+}
+
+void JobQueue::charge(std::int64_t job, double seconds) {
+    if (const auto found = jobs_.find(job); found != jobs_.end())
+        owners_of(found->second.place.priority)[found->second.place.owner].had_s += seconds;
+}
+
+JobQueue::Line JobQueue::line_before(std::int64_t job) const {
+    Line line;
+    const auto found = jobs_.find(job);
+    if (found == jobs_.end())
+        return line;
+    const QueuePlace& place = found->second.place;
+    const auto add = [&line](const auto& entry) {
+        if (!entry.second.empty())
+            line.before.push_back(entry.first.second);
+    };
+    if (place.priority == executor::Priority::nightly) {
+        for (const auto& [name, owner] : owners_of(executor::Priority::interactive))
+            std::ranges::for_each(owner.jobs, add);
+    }
+    line.owners = 0;
+    for (const auto& [name, owner] : owners_of(place.priority)) {
+        line.owners += static_cast<std::size_t>(name == place.owner || has_tasks(owner));
+        if (name != place.owner)
+            continue;
+        std::for_each(owner.jobs.begin(), owner.jobs.lower_bound(rank_of(job, place)), add);
+    }
+    return line;
+}
+
+}  // namespace drtv::farm
