@@ -92,7 +92,6 @@ void LocalExecutor::run() {
             idle_ = in_flight_.empty();
             if (idle_)
                 changed_.notify_all();
-            // Not for questions_: while the window is full they wait for an event.
             const auto news = [this] { return stopping_ || woken_ || !events_.empty(); };
             if (in_flight_.empty())
                 changed_.wait(lock, news);
@@ -166,84 +165,6 @@ void LocalExecutor::finish(Work& work, Outcome outcome) {
     else
         callbacks_.finished(
             {*work.sector, work.failed_attempts, reply_of<worker::SectorResult>(std::move(outcome))});
-}
-
-std::optional<LocalExecutor::Work> LocalExecutor::next_work() {
-    {
-        const std::lock_guard lock(mutex_);
-        if (draining_ || stopping_)
-            return std::nullopt;
-        if (!questions_.empty()) {
-            Work work = std::move(questions_.front());
-            questions_.pop_front();
-            return work;
-        }
-    }
-    if (!again_.empty()) {
-        // A suspect runs when nothing else does, and nothing joins it.
-        if (again_.front().alone && !in_flight_.empty())
-            return std::nullopt;
-        Work work = std::move(again_.front());
-        again_.pop_front();
-        return work;
-    }
-    std::optional<SectorTask> task = callbacks_.next(Priority::interactive);
-    if (!task)
-        task = callbacks_.next(Priority::nightly);
-    if (!task)
-        return std::nullopt;
-    Work work;
-    work.sector = task->id;
-    work.what = std::move(task->request);
-    return work;
-}
-
-void LocalExecutor::fill_window() {
-    while (in_flight_.size() < window_) {
-        if (in_flight_.size() == 1 && in_flight_.begin()->second.alone)
-            return;
-        std::optional<Work> work = next_work();
-        if (!work)
-            return;
-        send(std::move(*work));
-    }
-}
-
-bool LocalExecutor::ensure_worker() {
-    if (worker_)
-        return true;
-    const std::uint64_t number = ++worker_number_;
-    const auto post = [this, number](auto what) {
-        {
-            const std::lock_guard lock(mutex_);
-            events_.push_back({number, std::move(what)});
-        }
-        changed_.notify_all();
-    };
-    auto worker = WorkerProcess::start(options_.worker_command,
-                                       {[post](worker::Answer answer) { post(std::move(answer)); },
-                                        [post](std::string how) { post(std::move(how)); }});
-    if (!worker) {
-        spdlog::error("{}", worker.error().message);
-        return false;
-    }
-    worker_ = std::move(*worker);
-    spdlog::info("worker {} started", worker_->pid());
-    return true;
-}
-
-void LocalExecutor::send(Work work) {
-    if (!ensure_worker()) {
-        // The machine may be out of processes; the attempts bound how long we hope.
-        std::this_thread::sleep_for(std::chrono::milliseconds(200));
-        retry_or_fail(std::move(work), "no worker could be started");
-        return;
-    }
-    if (in_flight_.empty())
-        last_news_ = std::chrono::steady_clock::now();
-    const std::uint64_t id = next_id_++;
-    const auto [entry, added] = in_flight_.emplace(id, std::move(work));
-    worker_->send({id, entry->second.what});
 }
 
 }  // namespace drtv::executor

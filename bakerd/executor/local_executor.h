@@ -26,7 +26,7 @@ class LocalExecutor final : public Executor {
   public:
     struct Options {
         std::vector<std::string> worker_command;
-        int threads = 1;  // sectors in flight: a few more than threads, so that none waits
+        int threads = 1;  // in flight, of each rank: a few more than threads, so that none waits
         // A worker that has work and stays silent for this long is considered hung and is killed. The most
         // expensive sector that settings allow takes minutes.
         std::chrono::milliseconds stall_limit = std::chrono::minutes(30);
@@ -46,8 +46,11 @@ class LocalExecutor final : public Executor {
   private:
     using What = decltype(worker::Request::what);
     using Outcome = decltype(worker::Answer::what);
+    // What is begun before what, where the worker has no thread for it yet.
+    enum class Rank : std::uint8_t { question, interactive, nightly };
     struct Work {
         What what;
+        Rank rank = Rank::question;
         std::optional<std::uint64_t> sector;  // the caller's id; none of a question
         std::function<void(Outcome)> answer;  // of a question
         int failed_attempts = 0;
@@ -66,6 +69,7 @@ class LocalExecutor final : public Executor {
     void handle_death(const std::string& how);
     void retry_or_fail(Work work, const std::string& sentence);
     void finish(Work& work, Outcome outcome);
+    [[nodiscard]] bool has_room(Rank rank) const;
     void fill_window();
     [[nodiscard]] std::optional<Work> next_work();
     [[nodiscard]] bool ensure_worker();

@@ -5,6 +5,9 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <functional>
+#include <map>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -19,9 +22,13 @@ class BakeThreads {
           limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count_) + 1),
           arena_(count_, 0) {}
 
-    template <class Work>
-    void enqueue(Work work) {
-        arena_.enqueue(in_flight_.defer(std::move(work)));
+    // Of what waits for a thread, lower ranks are begun first, and within a rank what came first.
+    void enqueue(std::function<void()> work, int rank = 0) {
+        {
+            const std::lock_guard lock(mutex_);
+            waiting_.emplace(rank, std::move(work));
+        }
+        arena_.enqueue(in_flight_.defer([this] { next()(); }));
     }
 
     // Until all that was handed out is done; the caller helps.
@@ -30,10 +37,17 @@ class BakeThreads {
     }
 
   private:
+    [[nodiscard]] std::function<void()> next() {
+        const std::lock_guard lock(mutex_);
+        return std::move(waiting_.extract(waiting_.begin()).mapped());
+    }
+
     const int count_;
     tbb::global_control limit_;
     tbb::task_arena arena_;
     tbb::task_group in_flight_;
+    std::mutex mutex_;
+    std::multimap<int, std::function<void()>> waiting_;  // guarded by mutex_; by rank
 };
 
 }  // namespace drtv::worker

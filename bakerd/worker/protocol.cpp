@@ -241,6 +241,11 @@ std::string line_of(const Message& message) {
         },
         message.what);
     json["id"] = message.id;
+    // Left out where it is 0: what names a request by its line names it without.
+    if constexpr (requires { message.rank; }) {
+        if (message.rank != 0)
+            json["rank"] = message.rank;
+    }
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -264,6 +269,10 @@ std::optional<Message> message_of(std::string_view line) {
         Message message;
         Reader::read(json.at("id"), message.id);
         read_named(json, message.what);
+        if constexpr (requires { message.rank; }) {
+            if (json.contains("rank"))
+                Reader::read(json.at("rank"), message.rank);
+        }
         return message;
     } catch (const std::exception&) {
         return std::nullopt;

@@ -144,6 +144,7 @@ struct RequestFailure {
 struct Request {
     std::uint64_t id = 0;
     std::variant<InspectRequest, BakeRequest, AssessRequest> what;
+    std::uint8_t rank = 0;  // those that wait for a thread are begun in this order, lower ones first
 };
 
 struct Answer {

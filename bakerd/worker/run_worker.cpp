@@ -48,7 +48,7 @@ tl::expected<void, std::string> run_worker(const Options& options) {
         if (!request)
             return tl::unexpected("the worker was sent a line it does not understand: " +
                                   line.substr(0, 200));
-        threads.enqueue([&answer, request = *request] { answer(request); });
+        threads.enqueue([&answer, request = *request] { answer(request); }, request->rank);
     }
     // The daemon has gone or wants no more: what is left has no reader.
     std::fflush(out);

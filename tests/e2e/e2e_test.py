@@ -862,6 +862,61 @@ class Verdicts(FarmTest):
             done = self.farm.bake(daemon, "logs", "2", sector)
             self.assertEqual((done.returncode, done.stderr.count("\n")), (USAGE, 1), done.stderr)
 
+    def test_jobs_are_raised_held_and_released(self):
+        daemon = self.farm.daemon("data", "--threads", "1")
+        nightly = ("--priority", "nightly")
+        self.farm.bake(daemon, "submit", self.island(), *nightly)
+        lawn = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        self.farm.bake(daemon, "submit", lawn, *FEW_RAYS, *nightly, "--label", "the lawn")
+        job = self.farm.job(daemon, 2)
+        self.assertEqual((job["state"], job["jobs_ahead"], job["label"]), ("waiting", 1, "the lawn"))
+        told = self.farm.bake(daemon, "status", "2").stdout
+        self.assertRegex(told, r'job 2 "the lawn" \(nightly\) waiting: 0 of \d+ sectors done, 1 job ahead')
+        done = self.farm.bake(daemon, "raise", "2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.farm.bake(daemon, "wait", "2").returncode, 0)
+        self.assertEqual(self.farm.job(daemon, 1)["state"], "running")
+        done = self.farm.bake(daemon, "--json", "hold", "1")
+        self.assertEqual(last_object(done)["state"], "held", done.stderr)
+        # It stays so in the next daemon; others are baked.
+        daemon.stop()
+        daemon.start()
+        held = self.farm.job(daemon, 1)
+        self.assertEqual(held["state"], "held")
+        self.assertEqual(self.farm.bake(daemon, "submit", lawn, "--set", "rays=17", "--wait").returncode, 0)
+        self.assertEqual(self.farm.job(daemon, 1)["sectors_done"], held["sectors_done"])
+        self.farm.bake(daemon, "release", "1")
+        wait_until(
+            lambda: self.farm.job(daemon, 1)["sectors_done"] > held["sectors_done"], 60, "the job to go on"
+        )
+        for command in ("raise", "hold", "release"):
+            self.assert_sentence(self.farm.bake(daemon, command, "2"), "job 2 has ended", status=USAGE)
+            self.assert_sentence(self.farm.bake(daemon, command, "9"), "there is no job 9", status=USAGE)
+        self.assertIn("the lawn", self.farm.bake(daemon, "list", "--mine").stdout)
+        done = self.farm.bake(daemon, "submit", lawn, "--label", "x" * 129)
+        self.assert_sentence(done, "the label is longer than 128 bytes", status=USAGE)
+
+    def test_a_giant_job_holds_up_nobody_but_its_owner(self):
+        program = os.path.join(OPTIONS.bin, "bake")
+        if os.getuid() != 0 or subprocess.run(["test", "-x", program], user="nobody", check=False).returncode:
+            self.skipTest("this cannot be run by two people")
+        daemon = self.farm.daemon("data", "--threads", "1")
+        self.farm.bake(daemon, "submit", self.island())
+        lawn = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        os.chmod(self.farm.scratch.name, 0o755)
+        done = subprocess.run(
+            [program, "--server", daemon.address, "submit", lawn, *FEW_RAYS, "--wait"],
+            user="nobody",
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.farm.job(daemon, 1)["state"], "running")
+        self.assertEqual(self.farm.job(daemon, 2)["owner"], "nobody")
+        mine = self.farm.bake(daemon, "--json", "list", "--mine").stdout
+        self.assertEqual([json.loads(line)["job"] for line in mine.splitlines()], ["1"])
+
     def test_a_job_behind_another_waits(self):
         daemon = self.farm.daemon("data", "--threads", "1")
         self.farm.bake(daemon, "submit", self.island())

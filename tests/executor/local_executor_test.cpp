@@ -26,10 +26,11 @@ class LocalExecutorTest : public testing::Test {
         LocalExecutor::Callbacks callbacks;
         callbacks.next = [this](Priority priority) -> std::optional<SectorTask> {
             const std::lock_guard lock(mutex);
-            if (queue.empty() || queue.front().priority != priority)
+            const auto found = std::ranges::find(queue, priority, &SectorTask::priority);
+            if (found == queue.end())
                 return std::nullopt;
-            const SectorTask request = queue.front();
-            queue.pop_front();
+            const SectorTask request = *found;
+            queue.erase(found);
             changed.notify_all();
             return request;
         };
@@ -45,10 +46,10 @@ class LocalExecutorTest : public testing::Test {
     void start_fake(const std::string& mode, int threads = 2) { start({DRTV_FAKE_WORKER, mode}, threads); }
 
     // A sector that the worker treats so; its id is its place in the order of adding, from 0.
-    void add(std::int32_t behaviour) {
+    void add(std::int32_t behaviour, Priority priority = Priority::interactive) {
         const std::lock_guard lock(mutex);
         const auto id = static_cast<std::uint64_t>(added++);
-        queue.push_back({id, {{}, {behaviour, static_cast<std::int32_t>(id)}, {}, {}}});
+        queue.push_back({id, {{}, {behaviour, static_cast<std::int32_t>(id)}, {}, {}}, priority});
     }
 
     bool wait_for_all() {
@@ -104,6 +105,24 @@ TEST_F(LocalExecutorTest, AnswersMayComeInAnyOrder) {
     ASSERT_TRUE(wait_for_all());
     for (std::uint64_t id = 0; id < 60; ++id)
         expect_baked(id);
+}
+
+// It goes to the worker, which begins it when the next thread is free.
+TEST_F(LocalExecutorTest, AnInteractiveSectorDoesNotWaitBehindNightlyOnes) {
+    const test::TemporaryFolder folder;
+    start({DRTV_FAKE_WORKER, "gate", folder.path() + "/open"}, 1);
+    for (int n = 0; n < 10; ++n)
+        add(fake::gated, Priority::nightly);
+    wait_until_taken(3);
+    add(fake::good);
+    executor->wake();
+    {
+        std::unique_lock lock(mutex);
+        EXPECT_TRUE(changed.wait_for(lock, long_enough, [&] { return outcomes.contains(10); }));
+        EXPECT_EQ(queue.size(), 7u) << "what was not sent may be overtaken";
+    }
+    test::write_file(folder.path() + "/open", "");
+    EXPECT_TRUE(wait_for_all());
 }
 
 TEST_F(LocalExecutorTest, ASectorThatKillsTheWorkerFailsAloneAfterThreeAttempts) {
