@@ -38,6 +38,9 @@ void add_worker(CLI::App& app, Arguments& to) {
     command->add_option("--blobs", to.worker.blob_folder, "Folder of the blob store")->required();
     command->add_option("--threads", to.worker.threads, "Threads to bake with; 0: all")
         ->check(cli::whole_number(0, 1024));
+    command->add_option("--memory", to.worker.memory_bytes, "Bytes it may take; 0: no limit");
+    command->add_option("--nice", to.worker.nice, "How far other programs go before")
+        ->check(cli::whole_number(0, 19));
     command->callback([&to] {
         to.run = [&to]() -> cli::Result<cli::ExitCode> {
             if (auto ran = worker::run_worker(to.worker); !ran)

@@ -24,7 +24,16 @@ farm::ExecutorOptions executor_options(const ServeOptions& options,
                                        int threads) {
     const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
     farm::ExecutorOptions executor;
-    executor.worker_command = {self, "worker", "--blobs", blob_folder, "--threads", std::to_string(threads)};
+    executor.worker_command = {self,
+                               "worker",
+                               "--blobs",
+                               blob_folder,
+                               "--threads",
+                               std::to_string(threads),
+                               "--memory",
+                               std::to_string(options.worker_memory_bytes),
+                               "--nice",
+                               std::to_string(options.worker_nice)};
     executor.threads = threads;
     if (!options.is_on_slurm())
         return executor;
@@ -143,6 +152,20 @@ void add_serve(CLI::App& app, ServeOptions& options, std::function<void()> chose
                      options.threads,
                      "Threads to bake with, or for --executor slurm to answer questions with; 0: all")
         ->check(cli::whole_number(0, 1024))
+        ->capture_default_str();
+    serve_command
+        ->add_option(
+            "--worker-memory",
+            options.worker_memory_bytes,
+            "Bytes that baking on this machine may take, as 8GB; a map that needs more fails; 0: no limit")
+        ->transform(CLI::AsSizeValue(true))
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 62))
+        ->capture_default_str();
+    serve_command
+        ->add_option("--worker-nice",
+                     options.worker_nice,
+                     "How far other programs of this machine go before baking: 0 (not at all) to 19")
+        ->check(cli::whole_number(0, 19))
         ->capture_default_str();
     serve_command
         ->add_option(

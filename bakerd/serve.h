@@ -23,6 +23,8 @@ struct ServeOptions {
     std::string task_program;  // bakerd as the nodes see it; empty: this one
     double batch_s = farm::ExecutorOptions{}.batch_s;
     int threads = 0;
+    std::int64_t worker_memory_bytes = 0;  // 0: no limit
+    int worker_nice = 10;
     std::int64_t cache_bytes = farm::Farm::Options{}.cache_bytes;
     service::TlsFiles tls;
 

@@ -5,6 +5,7 @@
 #include "bakerd/worker/worker.h"
 
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -23,9 +24,22 @@ std::FILE* take_standard_output() {
     return ::fdopen(fd, "w");
 }
 
+// Neither is inherited from the daemon, whose own work is light.
+void limit_process(const Options& options) {
+    if (options.nice > 0)
+        ::setpriority(PRIO_PROCESS, 0, options.nice);
+    if (options.memory_bytes > 0) {
+        // Of what it takes for itself; files that it maps cost nothing.
+        const rlimit limit{static_cast<rlim_t>(options.memory_bytes),
+                           static_cast<rlim_t>(options.memory_bytes)};
+        ::setrlimit(RLIMIT_DATA, &limit);
+    }
+}
+
 }  // namespace
 
 tl::expected<void, std::string> run_worker(const Options& options) {
+    limit_process(options);
     // Dies with the daemon, whatever kills it.
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     std::FILE* out = take_standard_output();

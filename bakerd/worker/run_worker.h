@@ -2,6 +2,7 @@
 // in flight and nothing else.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <tl/expected.hpp>
@@ -10,7 +11,9 @@ namespace drtv::worker {
 
 struct Options {
     std::string blob_folder;
-    int threads = 0;  // 0: as many as the machine has
+    int threads = 0;                // 0: as many as the machine has
+    std::int64_t memory_bytes = 0;  // that it may take for itself; 0: no limit
+    int nice = 0;                   // 0 to 19: how far other programs go before
 };
 
 // Ends the process when its input ends; gives a sentence where it cannot begin, or is sent what it does not

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 
@@ -35,6 +36,13 @@ SectorNumbers numbers_of(const Sector& sector) {
     return numbers;
 }
 
+std::string too_little_memory() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return "the worker has not enough memory";
+    return fmt::format("the worker needs more memory than its limit of {} MB", limit.rlim_cur / 1'000'000);
+}
+
 }  // namespace
 
 tl::expected<std::unique_ptr<Worker>, std::string> Worker::open(const std::string& blob_folder) {
@@ -53,7 +61,7 @@ Answer Worker::answer(const Request& request) {
     try {
         answer.what = std::visit([this](const auto& what) { return perform(what); }, request.what);
     } catch (const std::bad_alloc&) {
-        answer.what = RequestFailure{"the worker has not enough memory", true};
+        answer.what = RequestFailure{too_little_memory(), true};
     } catch (const std::exception& exception) {
         answer.what =
             RequestFailure{fmt::format("the worker met an unexpected error: {}", exception.what()), true};
