@@ -45,6 +45,16 @@ farm::ExecutorOptions executor_options(const ServeOptions& options,
     return executor;
 }
 
+// With less a worker cannot begin.
+CLI::Validator worker_memory_check() {
+    return {[](const std::string& text) {
+                constexpr std::int64_t least = 256'000'000;
+                const std::int64_t bytes = std::stoll(text);
+                return bytes == 0 || bytes >= least ? "" : "at least 256MB, or 0 for no limit";
+            },
+            ""};
+}
+
 void add_slurm(CLI::App& command, ServeOptions& options) {
     executor::SlurmOptions& slurm = options.slurm;
     const auto add = [&command](const char* name, auto& value, const char* help) {
@@ -159,7 +169,7 @@ void add_serve(CLI::App& app, ServeOptions& options, std::function<void()> chose
             options.worker_memory_bytes,
             "Bytes that baking on this machine may take, as 8GB; a map that needs more fails; 0: no limit")
         ->transform(CLI::AsSizeValue(true))
-        ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 62))
+        ->check(worker_memory_check())
         ->capture_default_str();
     serve_command
         ->add_option("--worker-nice",

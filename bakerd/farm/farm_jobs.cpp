@@ -3,6 +3,10 @@
 #include "bakerd/farm/farm.h"
 #include "bakerd/farm/job_store.h"
 #include "bakerd/farm/job_table.h"
+#include "bakerd/farm/maps.h"
+#include "bakerd/farm/planner.h"
+#include "bakerd/farm/recorder.h"
+#include "bakerd/farm/result_cache.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -143,7 +143,7 @@ class JobBook {
     void want(Job& job, std::span<const WantedSector> wanted, Join join);
     // `key` is the sector's, but for its tolerance.
     [[nodiscard]] std::uint64_t task_for(const Job& job, const WantedSector& wanted, BakeKey key, Join join);
-    [[nodiscard]] JobQueue::Wanted begin(std::uint64_t id);
+    [[nodiscard]] JobQueue::Wanted begin(std::int64_t turn, std::uint64_t id);
     void drop_tasks(Job& job);
     void forget(std::uint64_t id);
     void changed(Job& job);

@@ -26,8 +26,8 @@ struct JobRequest {
     settings::JobSettings settings;  // each in its range (settings::check)
     std::optional<JobRegion> region;
     executor::Priority priority = executor::Priority::interactive;
-    std::string owner;
-    std::string label;
+    std::string owner{};
+    std::string label{};
     std::string request_id{};  // empty, or at most 64 bytes
 };
 

@@ -4,6 +4,7 @@
 #include "settings/message/job_settings.h"
 
 #include <fmt/format.h>
+#include <grpc/grpc_security_constants.h>
 
 #include <algorithm>
 #include <limits>

@@ -1464,6 +1464,21 @@ class Daemon(FarmTest):
         )
         self.assert_sentence(no_port, "127.0.0.1:99999", status=UNREADABLE)
 
+    def test_a_map_too_large_for_the_worker_fails_in_a_sentence(self):
+        daemon = self.farm.daemon("data", "--worker-memory", "256MB")
+        large = write_map(self.farm.path("large.gltf"), lawn=LAWN)
+        with_many_instances(large, 1_500_000)
+        done = self.farm.bake(daemon, "submit", large, *FEW_RAYS)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("more memory than its limit of 256 MB", done.stderr)
+        lawn = write_map(self.farm.path("map.gltf"), lawn=LAWN)
+        done = self.farm.bake(daemon, "submit", lawn, *FEW_RAYS, "--wait")
+        self.assertEqual(done.returncode, 0, done.stderr + daemon.log())
+        nice = subprocess.run(
+            ["ps", "-o", "ni=", "-p", str(daemon.worker_pid())], capture_output=True, text=True, check=True
+        )
+        self.assertEqual(nice.stdout.strip(), "10")
+
     def test_wrong_arguments_are_told(self):
         for arguments, part in (
             (["serve"], "--data"),

@@ -222,9 +222,11 @@ TEST_F(LocalExecutorTest, AMapThatKillsTheWorkerFailsWithAReason) {
 
 TEST_F(LocalExecutorTest, AnInspectionThatMustWaitCostsNoTime) {
     start_fake("normal", 1);
+    map::Digest silent;
+    silent.bytes[0] = fake::silent_map;
+    std::vector<std::future<Reply<worker::MapSummary>>> before_it;
     for (int n = 0; n < 3; ++n)
-        add(fake::silent);  // the window is full, for ever
-    wait_until_taken(3);
+        before_it.push_back(executor->inspect({silent}));  // the window is full, for ever
     auto answer = executor->inspect({{}});
     const std::clock_t before = std::clock();
     EXPECT_EQ(answer.wait_for(500ms), std::future_status::timeout);
