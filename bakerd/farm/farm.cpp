@@ -53,6 +53,7 @@ Result<void> Farm::start() {
     const auto owner = folder_->id();
     if (!owner)
         return tl::unexpected(owner.error());
+    book_.set_turn(turn_s(options_.executor));
     recorder_ = std::make_unique<Recorder>(*database_, *cache_, book_, [this] { executor_->wake(); });
     executor::Executor::Callbacks callbacks;
     callbacks.next = [this](executor::Priority priority) { return book_.next(priority); };

@@ -60,6 +60,9 @@ struct FinishedSector {
 
 class JobBook {
   public:
+    // JobQueue::set_turn. REQUIRES: nothing else is called at the same time.
+    void set_turn(double seconds) { queue_.set_turn(seconds); }
+
     // A job that is known from now on; `wanted` are its sectors that are not there, in the order of baking.
     // One that another job waits for is baked once. `expected_s` is how long they will take; 0: not known.
     void add(JobRow row,

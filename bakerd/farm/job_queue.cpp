@@ -62,25 +62,36 @@ void JobQueue::begin_turn(Owners& owners) {
     }
 }
 
+JobQueue::Owners::iterator JobQueue::next_owner(Owners& owners, const std::string& last) const {
+    auto first = owners.end();
+    for (auto owner = owners.begin(); owner != owners.end(); ++owner) {
+        if (owner->second.is_waiting && (first == owners.end() || owner->second.had_s < first->second.had_s))
+            first = owner;
+    }
+    const auto current = owners.find(last);
+    const bool goes_on = current != owners.end() && current->second.is_waiting &&
+                         current->second.had_s < first->second.had_s + turn_s_;
+    return goes_on ? current : first;
+}
+
 std::optional<std::uint64_t> JobQueue::next(executor::Priority priority, const Wants& wants) {
     Owners& owners = owners_of(priority);
+    std::string& last = last_[static_cast<std::size_t>(priority)];
     for (;;) {
         begin_turn(owners);
-        Owner* first = nullptr;
-        for (auto& [name, owner] : owners) {
-            if (owner.is_waiting && (first == nullptr || owner.had_s < first->had_s))
-                first = &owner;
-        }
-        if (first == nullptr)
+        const auto first = next_owner(owners, last);
+        if (first == owners.end())
             return std::nullopt;
+        Owner& owner = first->second;
         const auto job =
-            std::ranges::find_if(first->jobs, [](const auto& entry) { return !entry.second.empty(); });
+            std::ranges::find_if(owner.jobs, [](const auto& entry) { return !entry.second.empty(); });
         const std::uint64_t task = job->second.front();
         job->second.pop_front();
         const Wanted wanted = wants(job->first.second, task);
         if (!wanted.is_wanted)
             continue;
-        first->had_s += wanted.seconds;
+        owner.had_s += wanted.seconds;
+        last = first->first;
         return task;
     }
 }

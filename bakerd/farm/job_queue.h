@@ -28,6 +28,10 @@ struct QueuePlace {
 
 class JobQueue {
   public:
+    // How much more than others an owner may have had before its turn ends, in seconds of one thread: who
+    // changes maps with each sector loads them again and again.
+    void set_turn(double seconds) { turn_s_ = seconds; }
+
     // A new job, or a new place for a known one.
     void put(std::int64_t job, QueuePlace place);
     void remove(std::int64_t job);
@@ -80,8 +84,12 @@ class JobQueue {
     [[nodiscard]] static bool has_tasks(const Owner& owner);
     void begin_turn(Owners& owners);
 
+    [[nodiscard]] Owners::iterator next_owner(Owners& owners, const std::string& last) const;
+
     std::map<std::int64_t, Job> jobs_;
-    std::array<Owners, 2> owners_;  // by priority
+    std::array<Owners, 2> owners_;     // by priority
+    std::array<std::string, 2> last_;  // likewise: whose turn it was
+    double turn_s_ = 0;
 };
 
 }  // namespace drtv::farm

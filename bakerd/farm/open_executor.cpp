@@ -7,6 +7,13 @@
 
 namespace drtv::farm {
 
+double turn_s(const ExecutorOptions& options) {
+    if (!options.slurm)
+        return 10.0 * options.threads;
+    constexpr int usual_threads = 16;
+    return options.batch_s * (options.slurm->threads > 0 ? options.slurm->threads : usual_threads);
+}
+
 store::Result<std::unique_ptr<executor::Executor>> open_executor(const ExecutorOptions& options,
                                                                  const std::string& store_folder,
                                                                  const std::string& owner,

@@ -23,6 +23,10 @@ struct ExecutorOptions {
     double batch_s = 90;                      // that a task should take
 };
 
+// How long an owner's turn should last (JobQueue::set_turn): ten seconds of this machine, or a task of the
+// cluster.
+[[nodiscard]] double turn_s(const ExecutorOptions& options);
+
 // `store_folder` and its `owner` are needed for a cluster.
 [[nodiscard]] store::Result<std::unique_ptr<executor::Executor>> open_executor(
     const ExecutorOptions& options,

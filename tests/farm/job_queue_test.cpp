@@ -62,6 +62,25 @@ TEST(JobQueue, OwnersTakeTurnsByWhatTheyHaveHad) {
     EXPECT_NEAR(had[3], 75, 2);
 }
 
+// Each change of maps would cost a load.
+TEST(JobQueue, ATurnIsLongerThanASector) {
+    JobQueue queue;
+    queue.set_turn(10);
+    fill(queue, 1, of("ann"), 1000);
+    fill(queue, 2, of("bob"), 1000);
+    fill(queue, 3, of("cat"), 1000);
+    const std::vector<std::uint64_t> order = jobs_of_next(queue, 300);
+    std::map<std::uint64_t, int> had;
+    int changes = 0;
+    for (std::size_t n = 0; n < order.size(); ++n) {
+        ++had[order[n]];
+        changes += n > 0 && order[n] != order[n - 1] ? 1 : 0;
+    }
+    for (const auto& [job, sectors] : had)
+        EXPECT_NEAR(sectors, 100, 12) << job;
+    EXPECT_LE(changes, 40);
+}
+
 TEST(JobQueue, WhoComesBackBeginsWhereTheOthersAre) {
     JobQueue queue;
     fill(queue, 1, of("ann"), 10);
