@@ -1,11 +1,10 @@
 #include "client/job_request.h"
 
-#include "client/user_name.h"
-
 #include "client/folder_manifest.h"
 #include "client/map_contents.h"
 #include "client/map_text.h"
 #include "client/upload.h"
+#include "client/user_name.h"
 #include "format/cli/report.h"
 #include "format/folder/whole_file.h"
 #include "format/spelling/suggestion.h"

@@ -25,9 +25,10 @@ using v1::Job;
 // "3 of 4 nodes, 12 tasks at work, 30 in the queue, 2 lost".
 [[nodiscard]] std::string cluster_text(const v1::ClusterState& cluster);
 
-// ", 12 of them from the cache, 3 nearly the same (at most 0.1 % off)"; empty when all are baked.
 // ", 2 jobs ahead, begins in about 3 min"; empty where it does not wait.
-[[nodiscard]] std::string wait_text(const v1::Job& job);
+[[nodiscard]] std::string wait_text(const Job& job);
+
+// ", 12 of them from the cache, 3 nearly the same (at most 0.1 % off)"; empty when all are baked.
 [[nodiscard]] std::string reused_text(const Job& job);
 
 }  // namespace drtv::client

@@ -41,12 +41,8 @@ store::Result<void> Dispatcher::load_arrays() {
         ArrayWatch watch(batches, options_.patience, now());
         // Who asks for them again finds their answers.
         std::ranges::sort(keys);
-        const std::vector<Digest> answered = answers_.among(keys);
-        const auto answers = answers_.read(answered);
-        for (std::size_t n = 0; n < answered.size(); ++n) {
-            if (answers[n])
-                watch.settle(left_behind_.at(answered[n]).task, answered[n]);
-        }
+        for (const auto& [answered, answer] : answers_.find(keys))
+            watch.settle(left_behind_.at(answered).task, answered);
         // Whether the cluster heard of it is not known.
         arrays_.emplace(key, Array{Priority::nightly, std::move(batches), std::move(watch), 0, false});
     }

@@ -74,13 +74,10 @@ void Dispatcher::try_again(const std::string& array_key, const Array& array, con
         is_of_node = is_fault_of_node(ended, printed);
     }
     for (const Digest& key : ended.unanswered) {
-        const auto found = sectors_.find(key);
-        if (found == sectors_.end())
+        Sector* const placed = find_placed(key, array_key);
+        if (placed == nullptr)
             continue;
-        Sector& sector = found->second;
-        // Another array has it since.
-        if (!sector.place || sector.place->array != array_key)
-            continue;
+        Sector& sector = *placed;
         sector.place.reset();
         if (state == TaskState::out_of_memory)
             costs_.learn_too_little(sector.request, std::max(array.memory_bytes, std::int64_t{1} << 30));
@@ -104,12 +101,17 @@ void Dispatcher::try_again(const std::string& array_key, const Array& array, con
     }
 }
 
-// Another array has its sectors since, or nobody wants them.
-bool Dispatcher::is_missed(const std::string& array, const EndedTask& ended) const {
-    return std::ranges::any_of(ended.unanswered, [&](const Digest& key) {
-        const auto found = sectors_.find(key);
-        return found != sectors_.end() && found->second.place && found->second.place->array == array;
-    });
+// Nothing where another array has it since, or nobody wants it.
+Dispatcher::Sector* Dispatcher::find_placed(const Digest& key, const std::string& array) {
+    const auto found = sectors_.find(key);
+    const bool is_there =
+        found != sectors_.end() && found->second.place && found->second.place->array == array;
+    return is_there ? &found->second : nullptr;
+}
+
+bool Dispatcher::is_missed(const std::string& array, const EndedTask& ended) {
+    return std::ranges::any_of(ended.unanswered,
+                               [&](const Digest& key) { return find_placed(key, array) != nullptr; });
 }
 
 }  // namespace drtv::executor

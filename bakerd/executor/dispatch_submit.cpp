@@ -121,8 +121,6 @@ Dispatcher::Cut Dispatcher::cut(Priority priority) {
 
 void Dispatcher::submit(Priority priority) {
     Submissions& submissions = this->submissions(priority);
-    const auto open =
-        std::ranges::count_if(arrays_, [&](const auto& array) { return array.second.priority == priority; });
     // What was refused is nobody's any more.
     if (!submissions.trouble.empty() && std::ranges::none_of(sectors_, [&](const auto& sector) {
             return sector.second.priority == priority;
@@ -138,6 +136,8 @@ void Dispatcher::submit(Priority priority) {
         refuse_all(priority);
         return;
     }
+    const auto open =
+        std::ranges::count_if(arrays_, [&](const auto& array) { return array.second.priority == priority; });
     if (static_cast<std::size_t>(open) >= max_open(priority))
         return;
     auto [batches, is_pilot] = cut(priority);

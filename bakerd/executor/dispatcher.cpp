@@ -157,11 +157,9 @@ void Dispatcher::collect_answers() {
             asked.push_back(key);
     }
     std::ranges::sort(asked);
-    const std::vector<Digest> answered = answers_.among(asked);
-    const auto answers = answers_.read(answered);
-    for (std::size_t n = 0; n < answered.size(); ++n) {
-        if (answers[n] && sectors_.contains(answered[n]))
-            deliver(answered[n], *answers[n]);
+    for (const auto& [key, answer] : answers_.find(asked)) {
+        if (sectors_.contains(key))
+            deliver(key, answer);
     }
     for (const Digest& key : fresh) {
         const auto left = sectors_.find(key);

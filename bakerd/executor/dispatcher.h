@@ -155,7 +155,8 @@ class Dispatcher {
 
     // dispatch_ends.cpp: tasks that ended with sectors to bake.
     [[nodiscard]] bool is_fault_of_node(const EndedTask& ended, const std::string& printed);
-    [[nodiscard]] bool is_missed(const std::string& array, const EndedTask& ended) const;
+    [[nodiscard]] Sector* find_placed(const Digest& key, const std::string& array);
+    [[nodiscard]] bool is_missed(const std::string& array, const EndedTask& ended);
     void try_again(const std::string& array_key, const Array& array, const EndedTask& ended);
 
     // dispatch_view.cpp: the cluster.

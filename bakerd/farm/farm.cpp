@@ -1,22 +1,15 @@
 #include "bakerd/farm/farm.h"
 
-#include "bakerd/farm/clock.h"
 #include "bakerd/farm/database.h"
 #include "bakerd/farm/job_store.h"
-#include "bakerd/farm/job_table.h"
 #include "bakerd/farm/maps.h"
 #include "bakerd/farm/open_store.h"
 #include "bakerd/farm/planner.h"
 #include "bakerd/farm/recorder.h"
 #include "bakerd/farm/result_cache.h"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
-
 namespace drtv::farm {
 
-using store::ErrorCode;
-using store::fail;
 using store::Result;
 
 Farm::Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<store::BlobStore> blobs)

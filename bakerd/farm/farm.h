@@ -72,8 +72,7 @@ class Farm {
         const JobRequest& request, const std::function<bool()>& is_left = [] { return false; });
     [[nodiscard]] store::Result<PlanView> plan_job(const JobRequest& request);
     [[nodiscard]] store::Result<JobView> get_job(std::int64_t id);
-    // Newest first, ids below `before`.
-    // Of one owner, where it is named.
+    // Newest first, ids below `before`; of one owner, where it is named.
     [[nodiscard]] store::Result<std::vector<JobView>> list_jobs(std::int64_t before,
                                                                 std::size_t count,
                                                                 const std::optional<std::string>& owner = {});
@@ -108,8 +107,6 @@ class Farm {
     void stop(std::chrono::milliseconds patience);
 
   private:
-    [[nodiscard]] store::Result<JobView> move(std::int64_t id,
-                                              const std::function<void(JobRow& job)>& change);
     Farm(Options options, std::unique_ptr<DataFolder> folder, std::unique_ptr<store::BlobStore> blobs);
     [[nodiscard]] store::Result<void> load();
     [[nodiscard]] store::Result<void> start();
@@ -117,6 +114,8 @@ class Farm {
     [[nodiscard]] store::Result<JobView> create_planned(const JobRequest& request,
                                                         const std::function<bool()>& is_left);
     // Jobs in memory know no warnings of sectors.
+    [[nodiscard]] store::Result<JobView> move(std::int64_t id,
+                                              const std::function<void(JobRow& job)>& change);
     [[nodiscard]] store::Result<JobView> with_warnings(std::optional<JobView> view, std::int64_t id);
 
     const Options options_;

@@ -3,12 +3,9 @@
 #include "bakerd/farm/farm.h"
 #include "bakerd/farm/job_store.h"
 #include "bakerd/farm/job_table.h"
-#include "bakerd/farm/maps.h"
 #include "bakerd/farm/planner.h"
-#include "bakerd/farm/recorder.h"
 #include "bakerd/farm/result_cache.h"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <utility>
@@ -57,7 +54,7 @@ Result<JobView> Farm::create_planned(const JobRequest& request, const std::funct
 
 Result<JobView> Farm::with_warnings(std::optional<JobView> view, std::int64_t id) {
     if (!view)
-        return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
+        return no_job(id);
     if (view->row.state == JobState::running) {
         view->cluster = executor_->cluster();
         return std::move(*view);
@@ -90,7 +87,7 @@ Result<std::vector<JobView>> Farm::list_jobs(std::int64_t before,
 
 Result<JobView> Farm::cancel_job(std::int64_t id, bool forget_request) {
     if (!book_.view(id))
-        return fail(ErrorCode::not_found, fmt::format("there is no job {}", id));
+        return no_job(id);
     std::optional<JobRow> cancelled;
     const auto written = database_->write([&](Connection& connection) {
         auto job = find_job(connection, id);

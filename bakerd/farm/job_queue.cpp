@@ -15,15 +15,19 @@ std::deque<std::uint64_t>& JobQueue::tasks_of(std::int64_t job, Job& known) {
                : owners_of(known.place.priority)[known.place.owner].jobs[rank_of(job, known.place)];
 }
 
+std::deque<std::uint64_t> JobQueue::take_out(std::int64_t job, Job& known) {
+    std::deque<std::uint64_t> tasks = std::move(tasks_of(job, known));
+    if (!known.place.is_held)
+        owners_of(known.place.priority)[known.place.owner].jobs.erase(rank_of(job, known.place));
+    return tasks;
+}
+
 void JobQueue::put(std::int64_t job, QueuePlace place) {
     const auto [entry, is_new] = jobs_.try_emplace(job);
     Job& known = entry->second;
     std::deque<std::uint64_t> tasks;
-    if (!is_new) {
-        tasks = std::move(tasks_of(job, known));
-        if (!known.place.is_held)
-            owners_of(known.place.priority)[known.place.owner].jobs.erase(rank_of(job, known.place));
-    }
+    if (!is_new)
+        tasks = take_out(job, known);
     known = {std::move(place), {}};
     tasks_of(job, known) = std::move(tasks);
 }
@@ -32,9 +36,7 @@ void JobQueue::remove(std::int64_t job) {
     const auto found = jobs_.find(job);
     if (found == jobs_.end())
         return;
-    const QueuePlace& place = found->second.place;
-    if (!place.is_held)
-        owners_of(place.priority)[place.owner].jobs.erase(rank_of(job, place));
+    static_cast<void>(take_out(job, found->second));
     jobs_.erase(found);
 }
 

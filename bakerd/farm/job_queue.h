@@ -81,6 +81,8 @@ class JobQueue {
         return owners_[static_cast<std::size_t>(priority)];
     }
     [[nodiscard]] std::deque<std::uint64_t>& tasks_of(std::int64_t job, Job& known);
+    // Its tasks; it stands nowhere then.
+    [[nodiscard]] std::deque<std::uint64_t> take_out(std::int64_t job, Job& known);
     [[nodiscard]] static bool has_tasks(const Owner& owner);
     void begin_turn(Owners& owners);
 

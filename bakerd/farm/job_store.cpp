@@ -108,6 +108,10 @@ void resume(Connection& connection, JobRow job, JobBook& book) {
 
 }  // namespace
 
+tl::unexpected<store::Error> no_job(std::int64_t id) {
+    return store::fail(store::ErrorCode::not_found, fmt::format("there is no job {}", id));
+}
+
 JobRow new_job(const JobRequest& request, const Digest& inventory) {
     JobRow job;
     job.request_id = request.request_id;
@@ -166,7 +170,7 @@ std::vector<WantedSector> wanted_by(const Plan& plan) {
 store::Result<void> retry_job(Database& database, std::int64_t id, JobBook& book) {
     const auto view = book.view(id);
     if (!view)
-        return store::fail(store::ErrorCode::not_found, fmt::format("there is no job {}", id));
+        return no_job(id);
     std::optional<JobRow> reopened;
     std::vector<WantedSector> wanted;
     const auto done = database.write([&](Connection& connection) {
@@ -209,7 +213,7 @@ store::Result<void> move_job(Database& database,
                              JobBook& book,
                              const std::function<void(JobRow& job)>& change) {
     if (!book.view(id))
-        return store::fail(store::ErrorCode::not_found, fmt::format("there is no job {}", id));
+        return no_job(id);
     std::optional<JobRow> moved;
     const auto done = database.write([&](Connection& connection) {
         auto job = find_job(connection, id);

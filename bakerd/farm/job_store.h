@@ -7,9 +7,13 @@
 #include "bakerd/farm/records.h"
 #include "bakerd/store/error.h"
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace drtv::farm {
+
+[[nodiscard]] tl::unexpected<store::Error> no_job(std::int64_t id);
 
 // What is asked for, now.
 [[nodiscard]] JobRow new_job(const JobRequest& request, const Digest& inventory);
@@ -24,13 +28,13 @@ namespace drtv::farm {
 
 // Makes the failed sectors of a job that has ended wait again, and tells the book. Fails where there is no
 // such job or sector.
+[[nodiscard]] store::Result<void> retry_job(Database& database, std::int64_t id, JobBook& book);
+
 // Changes a running job's place in the queue. Errors: not_found; failed_precondition for one that has ended.
 [[nodiscard]] store::Result<void> move_job(Database& database,
                                            std::int64_t id,
                                            JobBook& book,
                                            const std::function<void(JobRow& job)>& change);
-
-[[nodiscard]] store::Result<void> retry_job(Database& database, std::int64_t id, JobBook& book);
 
 // Tells the book of all jobs that the database has, and resumes those that were running. Rows that are not as
 // they were written do not count: a sector is baked again, a job has failed.

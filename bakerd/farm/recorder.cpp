@@ -112,11 +112,12 @@ void Recorder::run() {
 void Recorder::record_together(std::vector<Pending>& several) {
     if (!write(several))
         return;  // one of them may be why
-    // Jobs may have joined while this was written.
-    std::erase_if(several, [this](Pending& pending) {
-        pending.sector.jobs = book_.leave(pending.sector.end.id, pending.sector.jobs);
-        return pending.sector.jobs.empty();
-    });
+    std::erase_if(several, [this](Pending& pending) { return leave(pending); });
+}
+
+bool Recorder::leave(Pending& pending) {
+    pending.sector.jobs = book_.leave(pending.sector.end.id, pending.sector.jobs);
+    return pending.sector.jobs.empty();
 }
 
 bool Recorder::try_to_record(Pending& pending) {
@@ -135,11 +136,7 @@ bool Recorder::try_to_record(Pending& pending) {
         refuse(pending, done.error());
         return done.error().code == store::ErrorCode::data_loss;
     }
-    // Jobs may have joined while this was written.
-    sector.jobs = book_.leave(sector.end.id, sector.jobs);
-    if (!sector.jobs.empty())
-        return try_to_record(pending);
-    return true;
+    return leave(pending) || try_to_record(pending);
 }
 
 store::Result<void> Recorder::write(std::span<Pending> several) {

@@ -56,6 +56,8 @@ class Recorder {
     [[nodiscard]] store::Result<void> write(std::span<Pending> several);
     [[nodiscard]] static Written write_one(Connection& connection, const Pending& pending);
     void tell(Pending& pending, const Written& written);
+    // False where jobs joined while the sector was written: it is theirs now.
+    [[nodiscard]] bool leave(Pending& pending);
     void refuse(const Pending& pending, const store::Error& error);
     void fail_in_memory(std::int64_t job, const std::string& error);
 

@@ -1,6 +1,7 @@
 #include "bakerd/farm/sector_views.h"
 
 #include "bakerd/farm/database.h"
+#include "bakerd/farm/job_store.h"
 #include "bakerd/farm/job_table.h"
 
 #include <fmt/format.h>
@@ -33,7 +34,7 @@ Result<std::vector<JobSectorView>> sector_views(Database& database,
                                                 std::optional<map::SectorCoordinate> after,
                                                 std::int64_t count) {
     if (!book.view(job))
-        return fail(ErrorCode::not_found, fmt::format("there is no job {}", job));
+        return no_job(job);
     auto rows =
         database.read([&](Connection& connection) { return sectors_of_job(connection, job, after, count); });
     if (!rows)
@@ -49,7 +50,7 @@ Result<std::vector<JobSectorView>> sector_views(Database& database,
                                                 std::int64_t job,
                                                 const std::vector<map::SectorCoordinate>& sectors) {
     if (!book.view(job))
-        return fail(ErrorCode::not_found, fmt::format("there is no job {}", job));
+        return no_job(job);
     auto rows = database.read([&](Connection& connection) {
         std::vector<std::optional<Checked<JobSectorRow>>> read;
         for (const map::SectorCoordinate& sector : sectors)

@@ -131,10 +131,16 @@ std::optional<TaskAnswer> Answers::read(const Digest& key) const {
     return read;
 }
 
-std::vector<std::optional<TaskAnswer>> Answers::read(std::span<const Digest> keys) const {
-    std::vector<std::optional<TaskAnswer>> answers(keys.size());
-    for_each_number(keys.size(), [&](std::size_t n) { answers[n] = read(keys[n]); });
-    return answers;
+std::vector<std::pair<Digest, TaskAnswer>> Answers::find(std::span<const Digest> keys) const {
+    const std::vector<Digest> answered = among(keys);
+    std::vector<std::optional<TaskAnswer>> answers(answered.size());
+    for_each_number(answered.size(), [&](std::size_t n) { answers[n] = read(answered[n]); });
+    std::vector<std::pair<Digest, TaskAnswer>> found;
+    for (std::size_t n = 0; n < answered.size(); ++n) {
+        if (answers[n])
+            found.emplace_back(answered[n], std::move(*answers[n]));
+    }
+    return found;
 }
 
 void Answers::remove(std::span<const Digest> keys) const {

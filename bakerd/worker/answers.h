@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace drtv::worker {
@@ -35,10 +36,12 @@ class Answers {
     // a name that is not there yet would hide it for a minute.
     [[nodiscard]] std::vector<Digest> among(std::span<const Digest> keys) const;
 
-    // Nothing where it cannot be read, or is none. Of many with some threads of its own: over a network each
-    // file is a wait of a millisecond.
+    // Nothing where it cannot be read, or is none.
     [[nodiscard]] std::optional<TaskAnswer> read(const Digest& key) const;
-    [[nodiscard]] std::vector<std::optional<TaskAnswer>> read(std::span<const Digest> keys) const;
+
+    // Those among the keys that can be read, with some threads of its own: over a network each file is a wait
+    // of a millisecond.
+    [[nodiscard]] std::vector<std::pair<Digest, TaskAnswer>> find(std::span<const Digest> keys) const;
 
     // Nothing happens where there is none.
     void remove(std::span<const Digest> keys) const;
